@@ -12,12 +12,6 @@ use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, P
 use super::tuning::TUNING;
 use crate::syntax::harmless;
 
-/// Between two lines where there is no terminal.
-const BETWEEN: Duration = Duration::from_secs(10);
-
-/// Between two drawings of the bar while nothing is reported, so that the time goes on.
-const TICK: Duration = Duration::from_millis(250);
-
 /// A bar on a terminal's standard error, gone when dropped; elsewhere a line every ten seconds.
 pub(super) struct Progress {
     bar: ProgressBar,
@@ -44,7 +38,7 @@ impl Progress {
             bar.set_style(style.progress_chars("=> ").with_key("left", left));
         }
         if visible && terminal {
-            bar.enable_steady_tick(TICK);
+            bar.enable_steady_tick(TUNING.tick);
         }
         let stage = Arc::new(Mutex::new(String::new()));
         let lines = (visible && !terminal).then(|| {
@@ -83,7 +77,7 @@ impl Progress {
 /// A line every ten seconds, until there is nobody to end it.
 fn write_lines(name: &str, bar: &ProgressBar, stage: &Mutex<String>, ended: &Receiver<()>) {
     let mut known = None;
-    while ended.recv_timeout(BETWEEN) == Err(RecvTimeoutError::Timeout) {
+    while ended.recv_timeout(TUNING.between_lines) == Err(RecvTimeoutError::Timeout) {
         let done = bar.position() as f64 / TUNING.parts_of_bar as f64;
         let stage = stage.lock().unwrap_or_else(PoisonError::into_inner).clone();
         // An unchanged state is not repeated.

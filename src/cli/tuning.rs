@@ -1,5 +1,7 @@
 //! Constants of the room `cli`.
 
+use std::time::Duration;
+
 use crate::{export, overview, study};
 use symdiff::constants::{Constant, tuning};
 
@@ -34,6 +36,12 @@ tuning! {
         values_of_axis: usize = 10_000, moves "which sweeps are refused";
         /// Most runs of a sweep.
         runs_of_sweep: usize = 100_000, moves "which sweeps are refused";
+        /// Time between two lines if there is no terminal.
+        between_lines: Duration = Duration::from_secs(10), moves "the progress bar";
+        /// Time between two drawings of the bar while nothing is reported, so that the time goes on.
+        tick: Duration = Duration::from_millis(250), moves "the progress bar";
+        /// Time between two looks at the files.
+        between_looks_at_files: Duration = Duration::from_millis(200), moves "how soon a changed file is seen";
     }
 }
 

@@ -1,5 +1,7 @@
 //! Constants of the room `export`.
 
+use std::time::Duration;
+
 use symdiff::constants::tuning;
 
 tuning! {
@@ -61,5 +63,7 @@ tuning! {
         most_bars: usize = 24, moves "bars of tornado plots";
         /// Digits of numbers on the page.
         digits_of_verification: usize = 4, moves "pages of verifications";
+        /// Time between two tries to lock a folder.
+        between_tries: Duration = Duration::from_millis(100), moves "how soon a folder that is in use is taken";
     }
 }

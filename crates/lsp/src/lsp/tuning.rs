@@ -1,5 +1,7 @@
 //! Constants of the room `lsp`.
 
+use std::time::Duration;
+
 use symdiff::constants::tuning;
 
 tuning! {
@@ -11,5 +13,7 @@ tuning! {
         depth_of_schema: usize = 12, moves "keys that are proposed";
         /// Files of a folder that are examined for an `include`.
         most_files: usize = 200, moves "which models a file of assemblies belongs to";
+        /// Time that an editor has been quiet when mechanisms are examined.
+        quiet: Duration = Duration::from_millis(400), moves "how soon diagnostics are shown";
     }
 }

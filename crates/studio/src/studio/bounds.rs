@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use serde_json::{Value, json};
 
@@ -14,9 +14,6 @@ use crate::methods::{BoundsRequest, Chebyshev, Taylor};
 use crate::model::{Description, Opened, read_open};
 use crate::results::{Bounds, Provenance, Summary};
 use crate::study::{self, Options, RunError};
-
-/// How long coarse bounds may take: later they are no news beside those that the model asks for.
-const COARSE: Duration = Duration::from_secs(10);
 
 /// A study of a series: each takes longer than the one before, and says more.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -168,7 +165,7 @@ fn run(desk: &Desk, model: &Description, reading: &Reading, stage: Stage) -> Res
     };
     tell(0.0);
     let begun = Instant::now();
-    let is_late = || stage == Stage::Coarse && begun.elapsed() > COARSE;
+    let is_late = || stage == Stage::Coarse && begun.elapsed() > TUNING.time_of_coarse;
     let interrupted = || desk.is_old(reading.change) || is_late();
     let options = Options {
         costly: reading.is_allowed,

@@ -2,17 +2,10 @@
 
 use std::io::{self, Read, Write};
 use std::net::{Shutdown, TcpStream};
-use std::time::Duration;
 
 use super::answer::Answer;
 use super::guard::Caller;
 use super::tuning::TUNING;
-
-/// How long the other end may be silent within a request.
-const SILENCE: Duration = Duration::from_secs(10);
-
-/// How long, and for how many bytes, an end waits for the other to close, so that the answer arrives.
-const LINGER: Duration = Duration::from_millis(500);
 
 /// The head of a request.
 #[derive(Debug, Default, PartialEq, Eq)]
@@ -75,8 +68,8 @@ impl Connection {
     /// # Errors
     /// Where there is none, or it is too long, or the other end is silent.
     pub fn open(mut stream: TcpStream) -> io::Result<Self> {
-        stream.set_read_timeout(Some(SILENCE))?;
-        stream.set_write_timeout(Some(SILENCE))?;
+        stream.set_read_timeout(Some(TUNING.silence))?;
+        stream.set_write_timeout(Some(TUNING.silence))?;
         stream.set_nodelay(true)?;
         let mut bytes = Vec::new();
         let mut piece = [0; 4096];
@@ -136,7 +129,7 @@ impl Connection {
 fn close(stream: &mut TcpStream, answer: &Answer) {
     // An end that is gone reads nothing.
     if answer.write(stream).is_ok() && stream.shutdown(Shutdown::Write).is_ok() {
-        let _ = stream.set_read_timeout(Some(LINGER));
+        let _ = stream.set_read_timeout(Some(TUNING.linger));
         let _ = io::copy(&mut stream.take(TUNING.dropped_bytes), &mut io::sink());
     }
 }

@@ -1,5 +1,7 @@
 //! Constants of the room `study: black_box`.
 
+use std::time::Duration;
+
 use symdiff::constants::tuning;
 
 tuning! {
@@ -15,5 +17,9 @@ tuning! {
         same_time: f64 = 1e-6, moves "which answers of programs are accepted";
         /// Characters of a text that is shown.
         shown_characters: usize = 300, moves "messages of programs that fail";
+        /// Time between two questions whether to go on.
+        glance: Duration = Duration::from_millis(20), moves "how soon a run of a program ends";
+        /// Time that a process has to end by itself once its input has ended.
+        grace: Duration = Duration::from_secs(2), moves "how soon a run of a program ends";
     }
 }

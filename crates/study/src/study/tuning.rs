@@ -4,7 +4,7 @@ use super::{
     allocate, answers, attained, black_box, bounding, cost, design, drawing, ensemble, excited, explain, fit,
     formulation, gradient, motion, price, reduced, statistics, stepping, verify,
 };
-use crate::{assemble, c_code, certificate, compile, methods, model, numerics, results, simulate};
+use crate::{assemble, c_code, certificate, compile, methods, model, numerics, results, simulate, store};
 use symdiff::constants::{Constant, tuning};
 
 tuning! {
@@ -34,6 +34,8 @@ pub fn tuning() -> Vec<Constant> {
         simulate::tuning(),
         c_code::tuning::Tuning::constants(),
         results::tuning::Tuning::constants(),
+        store::tuning::Tuning::constants(),
+        mbint_fmu::tuning(),
         crate::black_box::tuning::Tuning::constants(),
         Tuning::constants(),
         formulation::tuning::Tuning::constants(),
