@@ -16,8 +16,6 @@ tuning! {
         most_named: usize = 12, moves "the lists of `check`";
         /// First names that are listed if there are more.
         first_named: usize = 5, moves "the lists of `check`";
-        /// A smaller gain is not printed.
-        shown_gain: f64 = 5e-4, moves "gains of `design`";
         /// Width of lines of names, characters.
         width_of_names: usize = 100, moves "lists of names";
         /// Rows that are named if nothing explains them.

@@ -32,7 +32,7 @@ tuning! {
         /// Samples that are assembled together where nothing else is asked.
         assembled_at_once: usize = 8, moves "time only";
         /// Steps from the nominal parameters to those of a sample that is far from them.
-        continuation_steps: usize = 16, moves "which samples are assembled";
+        continuation_steps: usize = 16, moves "which samples are assembled, and which equilibria are found";
         /// Degree of the motions' polynomials, by the number of parameters.
         switch_degrees: [usize; 3] = [12, 6, 4], moves "which unmet switches are found";
         /// Samples for each parameter, where these are more.

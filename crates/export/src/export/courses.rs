@@ -130,7 +130,7 @@ impl<'a> Figure<'a> {
         let all_times = shown.courses.iter().flat_map(|course| course.times);
         let time = Axis::fit(all_times.copied(), shown.across.unit, 9, 0.0, 0.0);
         let value = Axis::fit(values.into_iter(), shown.unit, 6, 0.04, shown.noise);
-        let noise = shown.noise.max(TUNING.rounding_of_deviations * size);
+        let noise = shown.noise.max(TUNING.rounding_of_motion * size);
         let deviation = Axis::fit(below.into_iter(), shown.unit, 4, 0.06, noise);
         let left = 44.0 + label_width(&value).max(label_width(&deviation));
         let legend = Legend::new(entries, SIZE.0 - RIGHT - left);

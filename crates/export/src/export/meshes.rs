@@ -6,9 +6,8 @@ use super::tuning::TUNING;
 use crate::elements::Form;
 use crate::grammar::Mesh;
 use crate::results::Drawing;
-use crate::syntax;
 use crate::syntax::mesh_file::{Triangle, triangles};
-use crate::syntax::regular;
+use crate::syntax::{self, regular};
 
 /// Triangles of all meshes of a drawing; those beyond are left out.
 pub const MOST_TRIANGLES: usize = TUNING.most_triangles;

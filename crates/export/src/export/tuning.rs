@@ -9,18 +9,14 @@ tuning! {
     "export" {
         /// Most parameters that have a layer of their own.
         most_layers: usize = 6, moves "layers of plots of contributions";
-        /// Deviations that are smaller than this, relative to the output's size, are rounding noise.
-        rounding_of_deviations: f64 = 1e-12, moves "plots of outputs that hardly move";
-        /// A smaller gain is not told.
-        shown_gain: f64 = 5e-4, moves "the page of a design";
+        /// A smaller gain of a design is not told, on its page and on the terminal.
+        shown_gain: f64 = 5e-4, moves "the gains that a design tells";
         /// Most bodies and points of which the names are written.
         most_names: usize = 150, moves "names in drawings";
         /// Cosine of the angle between faces above which the edge between them is not drawn.
         smooth_edge: f64 = 0.9, moves "edges in drawings";
         /// Distance below which two points of an outline are one, px.
         same_point: f64 = 1.0, moves "outlines in drawings";
-        /// A range that is smaller than this, relative to its size, is rounding noise.
-        rounding_of_axis: f64 = 1e-12, moves "axes of outputs that hardly move";
         /// Rows that a series has at most; longer series have the extremes of several rows in one.
         rows_of_series: usize = 400, moves "courses in figures";
         /// The part of an axis' range to which numbers are written.
@@ -41,7 +37,8 @@ tuning! {
         most_triangles: usize = 12_000, moves "meshes in drawings";
         /// Largest file of results that is read, bytes.
         largest_file: u64 = 1 << 30, moves "which folders of results are read";
-        /// Motion that is smaller than this, relative to the largest output of the same unit, is rounding noise.
+        /// Motion, deviations and ranges of axes that are smaller than this, relative to the size of outputs, are
+        /// rounding noise.
         rounding_of_motion: f64 = 1e-12, moves "plots of outputs that hardly move";
         /// Most parameters of an output whose derivatives are shown: those with the largest influence in any row.
         most_derivatives: usize = 12, moves "derivatives in reports";

@@ -14,11 +14,10 @@ use super::names::Names;
 use super::text::Text;
 use super::tuning::TUNING;
 use crate::model::{Description, Opened, read_open};
-use crate::syntax;
-use crate::syntax::Diagnostics;
 use crate::syntax::text_file::read_text;
 use crate::syntax::within::OpenTexts;
 use crate::syntax::yaml::{self, Entry, Value};
+use crate::syntax::{self, Diagnostics};
 
 /// Keys of a file of assemblies.
 const KEYS_OF_PART: [&str; 3] = ["description", "include", "assemblies"];

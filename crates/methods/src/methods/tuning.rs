@@ -41,7 +41,7 @@ tuning! {
         /// Corners, at most, that slopes name as further samples.
         corners_of_slopes: usize = 8, moves "errors of bounds";
         /// Width of an output's range, relative to its values, that is rounding.
-        rounding_of_width: f64 = 1e-10, moves "errors of bounds";
+        rounding_of_width: f64 = 1e-10, moves "errors of bounds, and bounds of outputs that are polynomials";
     }
 }
 

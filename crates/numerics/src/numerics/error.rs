@@ -17,7 +17,10 @@ use super::tuning::TUNING;
 /// Error at step h over what halving h changes: 1/(1 − 2⁻²) for a second-order scheme.
 pub const RICHARDSON: f64 = 4.0 / 3.0;
 
-/// The same of the surrogate's.
+/// Factor by which the estimates of the steps' error may be wrong.
+pub const SAFETY_OF_STEPS: f64 = TUNING.safety_of_steps;
+
+/// Factor by which the estimates of the surrogate's error may be wrong.
 pub const SAFETY_OF_SURROGATE: f64 = TUNING.safety_of_surrogate;
 
 /// A band's errors over the output times.
@@ -77,7 +80,7 @@ impl BandError {
     /// band is lost from where its surrogate no longer follows the response.
     pub fn new(ranges: &[Range], surrogate: &[f64], time: &[f64], span: f64, tolerance: Option<f64>) -> Self {
         let surrogate = held_up(surrogate, SAFETY_OF_SURROGATE);
-        let time = held_up(&envelope(time), TUNING.safety_of_steps);
+        let time = held_up(&envelope(time), SAFETY_OF_STEPS);
         let total: Vec<f64> = surrogate.iter().zip(&time).map(|(surrogate, time)| surrogate + time).collect();
         let mut lost = false;
         let mut unresolved = Vec::with_capacity(total.len());

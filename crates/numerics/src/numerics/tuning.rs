@@ -57,7 +57,7 @@ tuning! {
         /// A validation sample whose value lies within this share of the band's width from its end carries that end.
         carries: f64 = 0.25, moves "errors of bounds";
         /// Factor by which the estimates of the steps' error may be wrong.
-        safety_of_steps: f64 = 1.25, moves "errors of bounds";
+        safety_of_steps: f64 = 1.25, moves "errors of bounds, of reduced outputs, of statistics and of ends over functions of time";
         /// Factor by which the estimates of the surrogate's error may be wrong.
         safety_of_surrogate: f64 = 2.0, moves "errors of bounds";
         /// Share of a neighbour's error below which no error falls.

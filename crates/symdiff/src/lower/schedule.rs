@@ -95,7 +95,7 @@ struct Grouping {
 }
 
 impl Grouping {
-    /// Within stretches of `TUNING.window_of_grouping` instructions, brings equal operations together: of those that are ready, always
+    /// Within stretches of so many instructions, brings equal operations together: of those that are ready, always
     /// all of the operation that has most.
     fn group(&mut self, pending: Vec<Pending>) -> Vec<Pending> {
         let mut grouped = Vec::with_capacity(pending.len());

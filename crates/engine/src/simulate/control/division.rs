@@ -4,8 +4,7 @@ use std::ops::Range;
 
 use super::schedule::Schedule;
 use super::tuning::TUNING;
-use crate::simulate::time_functions;
-use crate::simulate::time_functions::{TimeFunctions, Work};
+use crate::simulate::time_functions::{self, TimeFunctions, Work};
 
 /// A schedule with its steps divided.
 #[derive(Clone, Debug)]

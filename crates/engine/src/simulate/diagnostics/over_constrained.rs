@@ -8,8 +8,7 @@ use nalgebra::{DMatrix, DVector};
 use super::tuning::TUNING;
 use crate::assemble::{ResidualUnit, System};
 use crate::compile::StartProgram;
-use crate::simulate::start;
-use crate::simulate::start::{dependent_rows, jacobian_rows};
+use crate::simulate::start::{self, dependent_rows, jacobian_rows};
 
 /// Coordinates, constraints, and which of these the others imply, near a state (the layout's registers); `None` where
 /// all can hold.

@@ -8,8 +8,7 @@
 use super::tuning::TUNING;
 use crate::assemble::ConstraintId;
 use crate::simulate::simulator::Simulator;
-use crate::simulate::start;
-use crate::simulate::start::{jacobian_rows, row_independence, usual_row_sizes};
+use crate::simulate::start::{self, jacobian_rows, row_independence, usual_row_sizes};
 use crate::simulate::step::Stepper;
 
 /// A singular configuration that was passed.

@@ -9,8 +9,7 @@ use symdiff::Tile;
 
 use super::tuning::TUNING;
 use crate::compile::Tapes;
-use crate::simulate::control;
-use crate::simulate::control::{Adaptive, Controller, SwitchWatch};
+use crate::simulate::control::{self, Adaptive, Controller, SwitchWatch};
 use crate::simulate::features::FeatureWatch;
 use crate::simulate::interruption::Interruption;
 use crate::simulate::simulator::Simulator;

@@ -41,12 +41,6 @@ tuning! {
         same_event: f64 = 1e-10, moves "the steps of motions with events";
         /// Least share that a step is cut to at once where its error is large.
         least_share: f64 = 0.3, moves "the steps of motions with events";
-        /// Safety of the step size.
-        safety: f64 = 0.9, moves "the steps of motions with events";
-        /// Least factor from one step to the next.
-        least_factor: f64 = 0.2, moves "the steps of motions with events";
-        /// Largest factor from one step to the next.
-        largest_factor: f64 = 6.0, moves "the steps of motions with events";
         /// Share of a step over which the change of a rate is taken.
         share_for_bend: f64 = 1e-3, moves "the steps of motions with events";
         /// Rates beside an extreme that are none, as a share of those at the step's ends.
@@ -59,9 +53,6 @@ tuning! {
         most_steps_behind_words: usize = 40_000, moves "which motions are given up";
         /// Of its length, a step that passes over what a force does in space is tried with this share.
         passing_share: f64 = 0.5, moves "the steps of motions with events";
-        /// Parts of a step at whose ends outputs are taken that are reduced to one number: between them they are
-        /// cubics.
-        parts_of_reduced: usize = 16, moves "the outputs of motions with events that are reduced to one number";
         /// Samples whose segments are passed together.
         run_width: usize = 16, moves "time only";
         /// An event so close to the end, as a share of the duration, may be before it for other samples.

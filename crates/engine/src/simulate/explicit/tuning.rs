@@ -18,9 +18,7 @@ tuning! {
         /// Samples whose states are advanced together.
         run_width: usize = 32, moves "time only";
         /// Places in a step at which outputs are taken that are reduced to one number: between them they are cubics.
-        places_of_reduced: usize = 16, moves "reduced outputs of explicit runs";
-        /// The first step, as a share of the output step.
-        first_step: f64 = 1e-2, moves "the steps of explicit runs";
+        places_of_reduced: usize = 16, moves "reduced outputs of explicit runs, also through events";
         /// Smallest step, as a share of the duration.
         smallest_step: f64 = 1e-12, moves "the steps of explicit runs";
         /// A switch is located to this share of the duration.
@@ -34,10 +32,10 @@ tuning! {
         /// Most other steps between those that stability limits.
         others_between: usize = 6, moves "which runs count as stiff";
         /// Safety of the step size.
-        safety: f64 = 0.9, moves "the steps of explicit runs";
+        safety: f64 = 0.9, moves "the steps of explicit runs, also through events";
         /// Least factor from one step to the next.
-        least_factor: f64 = 0.2, moves "the steps of explicit runs";
+        least_factor: f64 = 0.2, moves "the steps of explicit runs, also through events";
         /// Largest factor from one step to the next.
-        largest_factor: f64 = 6.0, moves "the steps of explicit runs";
+        largest_factor: f64 = 6.0, moves "the steps of explicit runs, also through events";
     }
 }

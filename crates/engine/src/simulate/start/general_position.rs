@@ -4,8 +4,7 @@ use symdiff::Tile;
 
 use super::tuning::TUNING;
 use crate::assemble::System;
-use crate::compile;
-use crate::compile::{Layout, PivotSample, Tapes, compile_start};
+use crate::compile::{self, Layout, PivotSample, Tapes, compile_start};
 
 /// Evenly spread numbers in [−1, 1) by an additive recurrence, the same on every machine.
 pub fn spread(series: usize, index: usize) -> f64 {

@@ -17,8 +17,8 @@ tuning! {
         /// Corrections towards rest, relative to the coordinates' scales, that are not shortened.
         reach_of_corrections: f64 = 0.3, moves "which mechanisms and samples are assembled";
         /// A sample whose coordinates lie further than this from the nominal ones, in their scales, may be on another
-        /// branch.
-        far_sample: f64 = 0.25, moves "which mechanisms and samples are assembled";
+        /// branch: it is reached by small changes.
+        far_sample: f64 = 0.25, moves "which samples are assembled, and which equilibria are found";
         /// How far pivot samples are moved from the nominal start, in coordinate scales.
         pivot_sample_spread: f64 = 0.7, moves "the choice of pivots";
         /// How far a configuration in general position is from the start, in coordinate scales.
@@ -36,7 +36,7 @@ tuning! {
         /// A row is told apart by a column of its own where the entry there is at least this share of its largest.
         own_share: f64 = 1e-3, moves "which constraints count as redundant";
         /// Corrections (relative to the coordinates' scales) that end the iteration.
-        settled: f64 = 1e-14, moves "starts, within rounding";
+        settled: f64 = 1e-14, moves "starts and equilibria, within rounding";
         /// Corrections below this that no longer shrink are round-off.
         stalled: f64 = 1e-8, moves "starts, within rounding";
     }

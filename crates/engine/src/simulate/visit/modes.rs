@@ -9,8 +9,7 @@ use crate::simulate::ensemble::{Channel, EnsembleRun, Observed, Reduction, Stop}
 use crate::simulate::error::{SimulationError, assembly_error};
 use crate::simulate::integrator::Integrator;
 use crate::simulate::interruption::Interruption;
-use crate::simulate::modal;
-use crate::simulate::modal::{ModesThere, Vibrations};
+use crate::simulate::modal::{self, ModesThere, Vibrations};
 use crate::simulate::simulator::Simulator;
 use crate::simulate::start::Assembly;
 

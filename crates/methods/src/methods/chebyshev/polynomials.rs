@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use super::sensitivity::{Predicted, SensitivityAnalysis};
 use super::tuning::TUNING;
+use crate::methods;
 use crate::methods::ensemble::{Ensemble, EnsembleError, Observed, Sampling, Simulated, Until};
 use crate::methods::followed::Sensitivity;
 use crate::methods::kept::KeptRow;
@@ -44,7 +45,7 @@ impl Polynomials<'_> {
         let mut found = analysis.of_row(self, &extents);
         for (own, extent) in found.iter_mut().zip(&extents) {
             let size = extent.range.lower.abs().max(extent.range.upper.abs());
-            if extent.range.width() <= rounding.max(TUNING.rounding * size) {
+            if extent.range.width() <= rounding.max(methods::tuning::TUNING.rounding_of_width * size) {
                 own.main.iter_mut().chain(&mut own.total).for_each(|share| *share = 0.0);
             }
         }

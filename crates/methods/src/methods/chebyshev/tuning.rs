@@ -27,8 +27,6 @@ tuning! {
         few_parameters: usize = 3, moves "Chebyshev bounds";
         /// Degree where a model asks for none.
         order: usize = 5, moves "Chebyshev bounds";
-        /// What varies by no more than this share of its size is rounding.
-        rounding: f64 = 1e-10, moves "Chebyshev bounds of outputs that are polynomials";
         /// Most parameters whose corners are looked at beside the samples.
         most_corners: usize = 10, moves "Chebyshev bounds of outputs that are polynomials";
         /// Most parameters that act together for which ranges are found on a lattice.

@@ -42,18 +42,16 @@ tuning! {
         rare: f64 = 0.1, moves "tolerances that are found for a yield";
         /// Places that a requirement is given for this, at most.
         places: usize = 6, moves "tolerances that are found for a yield";
-        /// Samples of each requirement from which these places are looked for.
-        starts_of_places: usize = 12, moves "tolerances that are found for a yield";
         /// Points are drawn again where a multiple is another by this factor.
         redrawn: f64 = 1.2, moves "tolerances that are found for a yield";
         /// Samples from which the derivatives of the quantile are taken: those between these multiples of the share
         /// that may fail.
-        beside_quantile: [f64; 2] = [0.4, 2.5], moves "tolerances that are found for a yield";
-        /// Fewest samples from which these derivatives are taken.
-        fewest_beside: usize = 64, moves "tolerances that are found for a yield";
+        beside_quantile: [f64; 2] = [0.4, 2.5], moves "tolerances and nominal values that are found for a yield";
+        /// Fewest samples from which the derivatives of the quantile are taken.
+        fewest_beside: usize = 64, moves "tolerances and nominal values that are found for a yield";
         /// A margin that is unknown is taken for one that is this far from being fulfilled: an event that does not
         /// occur fails.
-        unknown_margin: f64 = -10.0, moves "tolerances that are found where an event may not occur";
+        unknown_margin: f64 = -10.0, moves "tolerances and nominal values that are found, if an event may not occur";
         /// Where the surrogate over the widest box is not known, the box is made smaller so many times.
         narrower_boxes: usize = 4, moves "which surrogate tolerances are found by";
         /// The surrogate's order is raised while its margins are off by more than this share of the nominal ones.

@@ -6,6 +6,7 @@ use super::tuning::TUNING;
 use super::worst::{Assessed, around, quotients};
 use crate::numerics::Linear;
 use crate::numerics::statistics::{Mixture, weighted_quantile};
+use crate::study::allocate;
 use crate::study::statistics::Laws;
 
 /// Of a share of the samples of the parameters' laws, which go with the nominal values.
@@ -51,8 +52,13 @@ impl<'s> Yield<'s> {
         let mut order: Vec<usize> = (0..values.len()).collect();
         order.sort_by(|&a, &b| values[a].total_cmp(&values[b]).then(a.cmp(&b)));
         let index = |times: f64| ((times * self.may_fail * values.len() as f64) as usize).min(values.len());
-        let (from, to) = (index(TUNING.beside_quantile[0]), index(TUNING.beside_quantile[1]));
-        if to < from + TUNING.fewest_beside { order[..TUNING.fewest_beside].to_vec() } else { order[from..to].to_vec() }
+        let (from, to) =
+            (index(allocate::tuning::TUNING.beside_quantile[0]), index(allocate::tuning::TUNING.beside_quantile[1]));
+        if to < from + allocate::tuning::TUNING.fewest_beside {
+            order[..allocate::tuning::TUNING.fewest_beside].to_vec()
+        } else {
+            order[from..to].to_vec()
+        }
     }
 }
 

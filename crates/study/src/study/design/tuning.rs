@@ -75,13 +75,6 @@ tuning! {
         same_optimum: f64 = 0.02, moves "nominal values that are found";
         /// Samples.
         samples_of_share: usize = 1 << 12, moves "nominal values that are found for a yield";
-        /// Samples from which the derivatives of the quantile are taken: those between these multiples of the share
-        /// that may fail.
-        beside_quantile: [f64; 2] = [0.4, 2.5], moves "nominal values that are found for a yield";
-        /// Fewest samples from which these derivatives are taken.
-        fewest_beside: usize = 64, moves "nominal values that are found for a yield";
-        /// A margin that is unknown is taken for one that is missed by this share of its limit.
-        unknown_margin: f64 = -10.0, moves "nominal values that are found";
         /// If there is no surrogate over a region, one about the same middle is tried that is this share of it.
         narrower_region: f64 = 0.5, moves "nominal values that are found";
         /// Times that a narrower region is tried for this, at most.

@@ -10,7 +10,7 @@ use super::climb::Climb;
 use super::motions::{Asked, ExcitedMotions, in_row};
 use super::point::Point;
 use super::tuning::TUNING;
-use crate::numerics::step_error;
+use crate::numerics::{SAFETY_OF_STEPS, step_error};
 use crate::simulate::{Schedule, SimulationError, Simulator};
 use crate::study::bounding::{FunctionEnd, FunctionEnds};
 use crate::study::problem::Study;
@@ -249,7 +249,7 @@ impl Search<'_, '_> {
             let direct = climb.sign * climb.reached();
             let error =
                 if jumps { TUNING.first_order * (halved - direct).abs() } else { step_error(&[direct], &[halved]) };
-            self.found.note_steps(climb.row, climb.output, TUNING.safety * error);
+            self.found.note_steps(climb.row, climb.output, SAFETY_OF_STEPS * error);
         }
         Ok(())
     }

@@ -26,8 +26,6 @@ tuning! {
         checked_rows: usize = 16, moves "errors of ends over functions of time";
         /// Error of steps over the change by halved ones where a function jumps: by the scheme, a jump takes a step.
         first_order: f64 = 2.0, moves "errors of ends over functions of time";
-        /// Factor by which estimates of the steps' error may be wrong, as with validation samples.
-        safety: f64 = 1.25, moves "errors of ends over functions of time";
         /// Iterations of Newton's method: each squares the error.
         newton_rounds: usize = 3, moves "ends over functions of time";
     }

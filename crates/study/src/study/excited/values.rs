@@ -10,7 +10,7 @@ use super::point::Point;
 use super::tuning::TUNING;
 use crate::assemble::NumberFormulas;
 use crate::model::ReducedKind;
-use crate::numerics::{largest, step_error};
+use crate::numerics::{SAFETY_OF_STEPS, largest, step_error};
 use crate::simulate::{Gradient, SimulationError, Term};
 use crate::study::bounding::{FunctionEnd, FunctionEnds};
 use crate::study::gradient::{InRows, in_rows};
@@ -313,7 +313,7 @@ impl Values<'_, '_, '_> {
         } else {
             step_error(&[*reached], &[halved])
         };
-        found.note_steps(0, index, TUNING.safety * error + (in_fewer - reached).abs());
+        found.note_steps(0, index, SAFETY_OF_STEPS * error + (in_fewer - reached).abs());
         Ok(())
     }
 }

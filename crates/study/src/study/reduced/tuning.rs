@@ -23,8 +23,6 @@ tuning! {
         more_degrees: usize = 2, moves "studies that refine themselves";
         /// Factor by which a tolerance becomes smaller from round to round.
         smaller_tolerance: f64 = 8.0, moves "studies that refine themselves";
-        /// Factor by which the estimate of a sample's time error may be wrong.
-        safety_of_time: f64 = 1.25, moves "verdicts of requirements";
         /// Rounding of a sample's margin, as a share of its limit: a sample that meets the limit exactly does not pass
         /// it.
         rounding_of_margin: f64 = 1e-12, moves "verdicts of requirements";

@@ -8,7 +8,7 @@ use super::tuning::TUNING;
 use crate::grammar::display_unit::ShownUnit;
 use crate::methods::Method;
 use crate::model::Requirement;
-use crate::numerics::{Sample, step_error};
+use crate::numerics::{SAFETY_OF_STEPS, Sample, step_error};
 use crate::results::{Band, LimitLine, NearestCase, RequirementSummary, Verdict, foremost};
 use crate::simulate::SimulationError;
 use crate::study::bounding::{Bounded, bands, simulation_error};
@@ -150,7 +150,7 @@ fn nearest(
     };
     let ((least, channels), (finer, _)) = (of(direct)?, of(halved)?);
     let rounding = own.limits.iter().map(|limit| TUNING.rounding_of_margin * limit.value.abs()).fold(0.0, f64::max);
-    let error = TUNING.safety_of_time * step_error(&[least], &[finer]) + rounding;
+    let error = SAFETY_OF_STEPS * step_error(&[least], &[finer]) + rounding;
     let xi = study.domain.xi(&best.0);
     let known = study.simulator.system.parameters.iter().zip(best.0.iter());
     Ok(Some(NearestCase {

@@ -4,7 +4,7 @@ use crate::elements::RandomFunction;
 use crate::methods::{Ensemble, Observed, Sampling, Until};
 use crate::model::{Description, ParameterValue, Trajectory};
 use crate::numerics::statistics::Normals;
-use crate::numerics::{Sample, step_error};
+use crate::numerics::{SAFETY_OF_STEPS, Sample, step_error};
 use crate::reduce::Subsystem;
 use crate::simulate::SimulationError;
 use crate::study::ensemble::{Progress, samples_of_part};
@@ -82,7 +82,7 @@ pub(super) fn realisations(
     let Some(direct) = simulated(study, &plan, &all, progress)? else { return Ok(None) };
     let few = &all[..count.min(TUNING.halved)];
     let Some(halved) = simulated(study, &plan.halved(), few, progress)? else { return Ok(None) };
-    let error = |(direct, halved): (&Vec<f64>, &Vec<f64>)| TUNING.safety * step_error(direct, halved);
+    let error = |(direct, halved): (&Vec<f64>, &Vec<f64>)| SAFETY_OF_STEPS * step_error(direct, halved);
     let whole = |values: Vec<f64>| values.iter().copied().cycle().take(samples.len()).collect::<Vec<f64>>();
     let errors = direct.rows.iter().zip(&halved.rows).map(error).collect();
     let of_numbers: Vec<f64> = direct.numbers.iter().zip(&halved.numbers).map(error).collect();

@@ -17,9 +17,6 @@ tuning! {
         most_realisations: usize = 1 << 24, moves "which statistics are refused";
         /// Samples that are simulated with halved steps too.
         halved: usize = 16, moves "errors of statistics of random excitations";
-        /// Factor by which the largest error of the samples with halved steps may be exceeded, as with validation
-        /// samples.
-        safety: f64 = 1.25, moves "errors of statistics of random excitations";
         /// Samples of margins, at most.
         most_samples_of_margins: usize = 1 << 18, moves "shares that fulfil requirements";
         /// If fewer samples than this fail, samples are drawn where it fails.
@@ -27,7 +24,7 @@ tuning! {
         /// If fewer samples than this fail, those that are drawn where it fails count if they say more.
         many_failing: usize = 4000, moves "shares that fulfil requirements";
         /// Samples from which places that fail are looked for.
-        starts_of_places: usize = 12, moves "shares that fulfil requirements";
+        starts_of_places: usize = 12, moves "shares that fulfil requirements, and tolerances that are found for a yield";
         /// Requirements whose margins at all samples are held at once.
         requirements_at_once: usize = 16, moves "memory of statistics";
         /// Margins that are held at once in a search for points that fail.

@@ -2,8 +2,7 @@
 
 use super::Adaptation;
 use super::tuning::TUNING;
-use crate::methods::chebyshev::composition;
-use crate::methods::chebyshev::composition::{Composer, NodeMotions, Row};
+use crate::methods::chebyshev::composition::{self, Composer, NodeMotions, Row};
 use crate::methods::chebyshev::detail::Detail;
 use crate::methods::chebyshev::estimator::RangeEstimator;
 use crate::methods::chebyshev::range_search::Previous;
