@@ -189,9 +189,8 @@ impl Row<4> for OutputDocs {
 impl Row<5> for Constant {
     const TITLE: &'static str = "Limits and thresholds";
     const INTRODUCTION: &'static str = "Numbers of the program that could be others, by the rooms of the source that have them, with the results that move\n\
-        if one changes. They are compiled in: a result never depends on the machine. The rooms of this list are complete;\n\
-        others have theirs in the source. \
-        `mbint explain --tuning` prints this list.";
+        if one changes. They are compiled in: a result never depends on the machine. Facts, such as coefficients of a method\n\
+        or sizes of a page, are not in it. `mbint explain --tuning` prints this list.";
     const HEADINGS: [(&'static str, Align); 5] = [
         ("room", Align::Left),
         ("name", Align::Left),

@@ -12,7 +12,7 @@ tuning! {
         highest_yield: f64 = 0.999_999_9, moves "which yields are refused";
         /// Most threads: more than any machine has that mbint runs on; a larger number is a typing error.
         most_threads: i64 = 1024, moves "which numbers of threads are refused";
-        /// More names than this are counted, the first few of them named.
+        /// Most names that `check` lists in full; of more it lists the first few.
         most_named: usize = 12, moves "the lists of `check`";
         /// First names that are listed if there are more.
         first_named: usize = 5, moves "the lists of `check`";

@@ -35,7 +35,8 @@ tuning! {
         continuation_steps: usize = 16, moves "which samples are assembled, and which equilibria are found";
         /// Degree of the motions' polynomials, by the number of parameters.
         switch_degrees: [usize; 3] = [12, 6, 4], moves "which unmet switches are found";
-        /// Samples for each parameter, where these are more.
+        /// Samples for each parameter in a search for unmet switches, of more parameters than polynomials are made
+        /// for.
         switch_samples: usize = 24, moves "which unmet switches are found";
         /// Intervals of the first look over the box, by the number of parameters.
         switch_intervals: [usize; 3] = [32, 10, 6], moves "which unmet switches are found";

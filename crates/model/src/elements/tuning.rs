@@ -7,7 +7,7 @@ tuning! {
     "elements" {
         /// Angle over which teeth come to bear, over the play.
         bearing_of_teeth: f64 = 1e-2, moves "bounds of models with backlash";
-        /// The smallest such angle, rad.
+        /// Smallest angle over which teeth come to bear, rad.
         sharpest_bearing: f64 = 1e-7, moves "bounds of models with backlash";
         /// Stretch over which a strand becomes taut, over the first radius.
         taut_belt: f64 = 1e-4, moves "bounds of models with belts";

@@ -52,7 +52,7 @@ tuning! {
         steps_to_time: usize = 64, moves "bounds of coordinates that turn";
         /// Share of the rate over all higher degrees that the rate at the highest has at least.
         caution: f64 = 0.7, moves "errors of bounds";
-        /// Slower than this is taken for no decay at all.
+        /// Rate of decay above which coefficients count as not falling at all.
         slowest_decay: f64 = 0.99, moves "errors of bounds";
         /// A validation sample whose value lies within this share of the band's width from its end carries that end.
         carries: f64 = 0.25, moves "errors of bounds";
@@ -148,9 +148,9 @@ tuning! {
         of_differences: f64 = 1.5, moves "errors of time steps";
         /// How much nearer the next neighbours are.
         nearer: f64 = 0.25, moves "ranges, within their error";
-        /// Factor by which neighbours are further away that look beyond them.
+        /// Factor by which neighbours that look beyond a peak are further away.
         further: f64 = 2.0, moves "ranges, within their error";
-        /// Largest distance of such neighbours, in ξ.
+        /// Largest distance of neighbours that look beyond a peak, in ξ.
         furthest: f64 = 0.5, moves "ranges, within their error";
         /// For so many axes all faces are looked at.
         most_faces: usize = 3, moves "ranges, within their error";
@@ -202,8 +202,8 @@ tuning! {
         max_tensor: usize = 1 << 16, moves "tight ranges of Taylor polynomials";
         /// Rows before and after the one that is looked at.
         rows_of_shift: usize = 4, moves "errors of time steps of oscillations";
-        /// The variance of the velocity over these rows, relative to its mean square, from which on a shift can be
-        /// told from an offset.
+        /// Variance of the velocity over the rows beside one, relative to its mean square, from which on a shift in
+        /// time can be told from an offset.
         turns: f64 = 0.25, moves "errors of time steps of oscillations";
     }
 }

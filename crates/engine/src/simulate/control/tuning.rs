@@ -28,14 +28,14 @@ tuning! {
         most_parts_of_step: usize = 128, moves "which runs are refused because steps are divided too often";
         /// Most steps that a schedule may come to besides those for each that it has.
         most_parts_besides: usize = 20_000, moves "which runs are refused because steps are divided too often";
-        /// Most steps that a schedule may come to beyond those that it has, in any case.
+        /// Most steps that a schedule may come to beyond those that it has, whatever their number.
         most_further_steps: usize = 4_000_000, moves "which runs are refused because steps are divided too often";
         /// Times that differ by this share of the output step are the same.
         same_instant: f64 = 1e-9, moves "the steps of runs with chosen instants";
         /// Shortest part of a step that ends at a chosen time, as a share of the step: multipliers of shorter ones are
         /// rounding.
         shortest_part: f64 = 0.01, moves "the steps of runs with chosen instants";
-        /// Steps for each of those that they are at odds with.
+        /// Steps of a refined schedule for each step of the one with which it is compared.
         finer_steps: f64 = 2.7, moves "steps that are refined";
         /// The first step, as a share of the output step.
         first_step: f64 = 1e-2, moves "the steps of runs with chosen steps";

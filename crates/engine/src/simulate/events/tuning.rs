@@ -14,7 +14,7 @@ tuning! {
         most_events: usize = 128, moves "bounds of motions with events";
         /// Points between the ends of a step at which a cubic's first root is searched for.
         root_points: usize = 16, moves "instants of events";
-        /// Bisections between two of these points.
+        /// Bisections between two of the points at which a cubic's first root is searched for.
         root_bisections: usize = 50, moves "instants of events";
         /// A crossing after this share of a step is at its end.
         at_the_end: f64 = 0.999, moves "instants of events";
@@ -43,7 +43,7 @@ tuning! {
         least_share: f64 = 0.3, moves "the steps of motions with events";
         /// Share of a step over which the change of a rate is taken.
         share_for_bend: f64 = 1e-3, moves "the steps of motions with events";
-        /// Rates beside an extreme that are none, as a share of those at the step's ends.
+        /// Rate beside an extreme that counts as none, as a share of the rates at the step's ends.
         flat_rate: f64 = 1e-7, moves "the steps of motions with events";
         /// Most steps that are tried of a motion without an event: a smooth motion that takes more is stiff.
         most_steps: usize = 3000, moves "which motions are given up";

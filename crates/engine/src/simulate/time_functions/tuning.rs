@@ -30,7 +30,7 @@ tuning! {
         most_cuts: usize = 120, moves "the steps of runs with functions of time";
         /// Most parts of the box of parameters that are looked at to tell how often a step is switched.
         most_parts_of_box: usize = 300, moves "the steps of runs with functions of time";
-        /// Most times that a part of the box of parameters is halved for this.
+        /// Most times that a part of the box of parameters is halved to tell how often a step is switched.
         deepest_part: u32 = 14, moves "the steps of runs with functions of time";
         /// Functions enclosed over a box before a search is given up: a minute or two.
         most_enclosures: usize = 100_000_000, moves "the steps of runs with functions of time";

@@ -64,7 +64,7 @@ tuning! {
         highest_of_many: u8 = 16, moves "bounds within a tolerance";
         /// Degree from which on surpluses tell how high a degree would have to be.
         telling_degree: u8 = 16, moves "bounds within a tolerance";
-        /// Degrees over which surpluses are compared for this.
+        /// Degrees over which surpluses are compared to tell how high a degree would have to be.
         compared_degrees: u8 = 8, moves "bounds within a tolerance";
         /// A box is split where the expected surplus of a higher degree than is allowed is so many times the largest
         /// allowed one.

@@ -7,7 +7,7 @@ tuning! {
     "numerics: functions_of_time" {
         /// Frequencies that are tried in the width of a peak, one over the time.
         tried_frequencies: f64 = 4.0, moves "ends over functions of a band of frequencies";
-        /// Divisions of the distance of two of them around the best.
+        /// Divisions of the distance of two tried frequencies around the best.
         divisions: usize = 40, moves "ends over functions of a band of frequencies";
         /// Share of a cell's part that is added where a kernel ends: a sixth of 3/8, and as much again.
         smeared: f64 = 0.15, moves "ends over functions with a budget";

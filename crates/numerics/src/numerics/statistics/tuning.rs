@@ -11,7 +11,7 @@ tuning! {
         step_of_scores: f64 = 1e-2, moves "shares of failing products";
         /// Most steps of a search for the likeliest point that fails.
         steps_to_likeliest: usize = 25, moves "shares of failing products";
-        /// Longest step of such a search, in normal scores.
+        /// Longest step of a search for the likeliest point that fails, in normal scores.
         longest_step: f64 = 1.5, moves "shares of failing products";
         /// Places nearer to each other than this are one.
         places_apart: f64 = 0.7, moves "shares of failing products";
@@ -19,7 +19,7 @@ tuning! {
         replicates: usize = 16, moves "statistics, and their sampling errors";
         /// Largest normal score up to which a law without a closed quantile is tabulated.
         farthest_score: i32 = 9, moves "samples of laws without a closed quantile";
-        /// Intervals of this table to a score.
+        /// Intervals to a score of the table of a law without a closed quantile.
         per_score: i32 = 64, moves "samples of laws without a closed quantile";
         /// Half a step for slopes at the table's points.
         step_of_table: f64 = 1e-4, moves "samples of laws without a closed quantile";
@@ -46,7 +46,7 @@ tuning! {
         along_ray: f64 = 1e-3, moves "rare shares of failing products";
         /// Of intervals of two methods, so many times the wider one may part them.
         intervals_apart: f64 = 2.0, moves "rare shares of failing products";
-        /// Largest distance at which this point is looked for, in normal scores.
+        /// Largest distance at which the likeliest point that fails is looked for, in normal scores.
         farthest_likeliest: f64 = 8.0, moves "rare shares of failing products";
         /// Steps along a ray in which changes of sign are looked for.
         steps_of_ray: usize = 20, moves "rare shares of failing products";

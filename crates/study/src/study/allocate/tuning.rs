@@ -13,7 +13,8 @@ tuning! {
         settled_choice: [f64; 2] = [1e-6, 3e-3], moves "tolerances that are found";
         /// Most steps towards the largest factor that is good.
         secants: usize = 40, moves "tolerances that are found";
-        /// Margin, and width of the bracket over its upper end, at which these steps end.
+        /// Margin at which the steps towards the largest good factor end, and the width of the factor's bracket,
+        /// relative to its upper end.
         close: f64 = 1e-7, moves "tolerances that are found";
         /// The remaining margin may be negative by rounding.
         rounding: f64 = 1e-9, moves "tolerances that are found";
@@ -40,7 +41,7 @@ tuning! {
         points: usize = 1 << 9, moves "tolerances that are found for a yield";
         /// If less than this share may fail, points are drawn about the places that fail first.
         rare: f64 = 0.1, moves "tolerances that are found for a yield";
-        /// Places that a requirement is given for this, at most.
+        /// Most places that fail about which points are drawn for a requirement.
         places: usize = 6, moves "tolerances that are found for a yield";
         /// Points are drawn again where a multiple is another by this factor.
         redrawn: f64 = 1.2, moves "tolerances that are found for a yield";
@@ -56,7 +57,7 @@ tuning! {
         narrower_boxes: usize = 4, moves "which surrogate tolerances are found by";
         /// The surrogate's order is raised while its margins are off by more than this share of the nominal ones.
         rough: f64 = 0.02, moves "which surrogate tolerances are found by";
-        /// Times that the surrogate's order is raised for this, at most.
+        /// Times that the surrogate's order is raised for its margins, at most.
         raised_orders: usize = 3, moves "which surrogate tolerances are found by";
         /// A difference quotient's step, as a share of a multiple.
         step_of_difference: f64 = 1e-3, moves "tolerances that are found";

@@ -23,7 +23,7 @@ tuning! {
         bounds_done: f64 = 0.95, moves "the progress bar";
         /// Share of the budget that is kept for the schemes on the nominal trajectory.
         for_schemes: f64 = 0.2, moves "which settings a cost study runs";
-        /// Most time that is kept for them, s.
+        /// Most time that is kept for the schemes on the nominal trajectory, s.
         most_for_schemes: f64 = 5.0, moves "which settings a cost study runs";
         /// Highest orders of the reference for one, two and three parameters.
         highest_orders: [usize; 3] = [32, 24, 10], moves "the reference of a cost study";

@@ -77,7 +77,7 @@ tuning! {
         samples_of_share: usize = 1 << 12, moves "nominal values that are found for a yield";
         /// If there is no surrogate over a region, one about the same middle is tried that is this share of it.
         narrower_region: f64 = 0.5, moves "nominal values that are found";
-        /// Times that a narrower region is tried for this, at most.
+        /// Times that a narrower region is tried if there is no surrogate, at most.
         narrower_regions: usize = 4, moves "nominal values that are found";
         /// Worst cases that are remembered for each requirement.
         remembered: usize = 12, moves "nominal values that are found";

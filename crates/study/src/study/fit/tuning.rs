@@ -66,7 +66,7 @@ tuning! {
         volumes_apart: f64 = 0.03, moves "consistent sets";
         /// Tolerance of the factor of the noise at which rows are explained.
         tolerance_of_factor: f64 = 0.01, moves "rows that no parameters explain";
-        /// Boxes that are examined for this factor.
+        /// Boxes that are examined for the factor of the noise at which rows are explained.
         boxes_of_factor: usize = 4000, moves "rows that no parameters explain";
         /// Rows that are as bad as the worst at the best parameters, up to this share.
         as_bad: f64 = 0.05, moves "rows that no parameters explain";

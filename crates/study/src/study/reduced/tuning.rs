@@ -28,7 +28,7 @@ tuning! {
         rounding_of_margin: f64 = 1e-12, moves "verdicts of requirements";
         /// Rounds of the search for a sample that fails, if bounds say that there may be one.
         rounds_of_search: usize = 6, moves "verdicts of requirements";
-        /// First distance of this search, in ξ.
+        /// First distance of the search for a sample that fails, in ξ.
         first_reach: f64 = 0.5, moves "verdicts of requirements";
     }
 }

@@ -21,7 +21,7 @@ tuning! {
         most_samples_of_margins: usize = 1 << 18, moves "shares that fulfil requirements";
         /// If fewer samples than this fail, samples are drawn where it fails.
         few_failing: usize = 400, moves "shares that fulfil requirements";
-        /// If fewer samples than this fail, those that are drawn where it fails count if they say more.
+        /// If fewer samples than this fail, samples that are drawn at the failing places count if they say more.
         many_failing: usize = 4000, moves "shares that fulfil requirements";
         /// Samples from which places that fail are looked for.
         starts_of_places: usize = 12, moves "shares that fulfil requirements, and tolerances that are found for a yield";
@@ -41,8 +41,8 @@ tuning! {
         beyond_error: [usize; 5] = [0, 4, 16, 64, 128], moves "errors of surrogates of statistics";
         /// Samples where a model asks for no number: about a million.
         samples: usize = 1 << 20, moves "statistics of outputs";
-        /// Over time a share of them is enough: quantiles are bands there. The row in which an output varies most has
-        /// all.
+        /// Statistics over time have one in so many of the samples: quantiles are bands there. The row in which an
+        /// output varies most has all.
         over_time: usize = 16, moves "statistics of outputs";
         /// Numbers that all samples hold, at most.
         most_numbers: usize = 1 << 25, moves "which statistics have fewer samples";

@@ -22,8 +22,8 @@ tuning! {
         /// Rounding of an output's values, as a share of the largest.
         rounding: f64 = 256.0 * f64::EPSILON, moves "Chebyshev bounds";
         /// An output does not follow from the coordinates if it differs from its simulated samples by the first, as a
-        /// share of their range, and the second, as a share of their values. (Accelerations and reactions of the
-        /// samples have errors of the scheme that those which follow do not have.).
+        /// share of their range, and the second, as a share of their values: accelerations and reactions of the
+        /// samples have errors of the scheme that those which follow do not have.
         disagrees: (f64, f64) = (0.25, 1e-3), moves "Chebyshev bounds";
         /// Samples at which outputs are held against the simulation, at most.
         compared: usize = 24, moves "Chebyshev bounds";

@@ -89,18 +89,18 @@ tuning! {
         far_outside: f64 = 2.0, moves "Chebyshev bounds through events";
         /// Points outside of the samples that are added at once.
         covering: usize = 4, moves "Chebyshev bounds through events";
-        /// Distance of such points, in ξ.
+        /// Distance of points that are added outside of the samples, in ξ.
         covering_apart: f64 = 0.2, moves "Chebyshev bounds through events";
         /// Intervals of the lattice along each axis, by the number of parameters; more have corners and points spread
         /// over the box, each joined to the next.
         intervals: [usize; 4] = [32, 12, 6, 4], moves "Chebyshev bounds through events";
-        /// Corners that a range of more parameters is searched from.
+        /// Corners of the box from which a range of many parameters is searched.
         corners_of_lattice: usize = 64, moves "Chebyshev bounds through events";
-        /// Points for each parameter that such a range is searched from.
+        /// Points for each parameter from which a range of many parameters is searched.
         spread_a_parameter: usize = 32, moves "Chebyshev bounds through events";
         /// Points on a surface, at most.
         most_on_surface: usize = 96, moves "Chebyshev bounds through events";
-        /// Corrections of such a point along its edge.
+        /// Corrections of a point on a surface along its edge.
         corrections: usize = 5, moves "Chebyshev bounds through events";
         /// How far the branch of a segment goes on beyond its ends, as a share of it.
         beyond_branch: f64 = 0.02, moves "Chebyshev bounds through events";
