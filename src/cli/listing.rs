@@ -9,7 +9,7 @@ use crate::elements::effects::EffectKind;
 use crate::grammar::Sensor;
 use crate::grammar::reference::{self, FunctionDocs, OutputDocs, UnitDocs};
 use crate::overview::{Align, Table};
-use crate::syntax::Code;
+use crate::syntax::{Code, wrapped};
 use serde::Serialize;
 use symdiff::constants::Constant;
 
@@ -31,7 +31,7 @@ impl Listing {
             Self::Units => text(&reference::units()),
             Self::Functions => text(&reference::functions()),
             Self::Outputs => text(&outputs()),
-            Self::Tuning => text(&tuning()),
+            Self::Tuning => tuning_text(),
             Self::ExitCodes => text(&Status::ALL.map(Status::docs)),
             Self::Codes => codes_text(),
         }
@@ -98,6 +98,21 @@ struct Limit {
 fn limits() -> Vec<Limit> {
     let limit = |Constant { room, name, value, why, moves }| Limit { room, name, value, why, moves };
     tuning().into_iter().map(limit).collect()
+}
+
+/// The constants, room by room: their texts are too long for columns.
+fn tuning_text() -> String {
+    let mut text = String::new();
+    let mut last = "";
+    for Constant { room, name, value, why, moves } in tuning() {
+        if room != last {
+            text += &format!("{}{room}\n", if last.is_empty() { "" } else { "\n" });
+            last = room;
+        }
+        let about = wrapped(&format!("{why} It moves {moves}.")).replace('\n', "\n    ");
+        text += &format!("  {name} = {value}\n    {about}\n");
+    }
+    text
 }
 
 /// A code, for those who list it.

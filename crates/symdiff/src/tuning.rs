@@ -5,17 +5,17 @@ use crate::constants::tuning;
 tuning! {
     /// Expressions, formulas and tapes.
     "symdiff" {
-        /// Largest whole exponent that is multiplied out.
+        /// Largest whole exponent of a number of twice the digits that is multiplied out.
         factors_of_double_double: f64 = 1024.0, moves "checks of derivatives, within rounding";
         /// Allowance for a library's error, relative to the value.
         of_library: f64 = 4.0 * f64::EPSILON, moves "widths of enclosures";
-        /// Largest whole power that is multiplied out.
+        /// Largest whole exponent of a Taylor model that is multiplied out.
         factors_of_model: f64 = 64.0, moves "widths of proven bounds";
         /// Most pieces of a table that a box may reach.
         pieces_of_spline: usize = 64, moves "widths of proven bounds of models with tables";
         /// Degree of a polynomial that is still seen to be one.
         degree_of_polynomial: usize = 12, moves "which integrals are written out";
-        /// Conditions that are joined in one.
+        /// Conditions that are joined in one in an antiderivative of a function that is defined piecewise.
         most_conditions: usize = 8, moves "which integrals are written out";
         /// A jump at the knots below this share of the values there is of rounding.
         jump_of_rounding: f64 = 1e-9, moves "ranges of tables";

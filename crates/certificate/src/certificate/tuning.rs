@@ -7,7 +7,7 @@ tuning! {
     "certificate" {
         /// Most cells of a grid through all ends of pieces.
         most_parts: usize = 10_000_000, moves "which certificates are checked";
-        /// Most boxes that are looked at.
+        /// Most boxes that a range of a polynomial is divided into.
         most_boxes: usize = 100_000, moves "which certificates are checked";
         /// Factor by which B⁻¹ and B may enlarge a distance before B is turned.
         skew: f64 = 100.0, moves "widths of proven bounds";
@@ -17,7 +17,7 @@ tuning! {
         attempts_of_krawczyk: usize = 12, moves "which steps are proven, and widths of proven bounds";
         /// Factor by which the next box is larger than the image of the last one.
         inflation_of_krawczyk: f64 = 1.25, moves "which steps are proven, and widths of proven bounds";
-        /// Most attempts.
+        /// Most candidates for a solution of linear inequalities.
         attempts_of_majorant: usize = 100, moves "which cells are proven, and widths of proven bounds";
         /// Factor by which the next candidate is larger than the image of the last one.
         inflation_of_majorant: f64 = 1.05, moves "which cells are proven, and widths of proven bounds";

@@ -31,7 +31,7 @@ tuning! {
         tolerance_of_path: f64 = 0.05, moves "courses in figures";
         /// Size from which on a number is too long: prefixes of areas and volumes are far apart.
         long_number: f64 = 1e5, moves "units of figures";
-        /// Digits of deviations.
+        /// Digits of deviations on the page of a fit.
         digits_of_deviations: i32 = 4, moves "pages of fits";
         /// Most triangles of all meshes of a drawing; those beyond are left out.
         most_triangles: usize = 12_000, moves "meshes in drawings";

@@ -5,11 +5,11 @@ use symdiff::constants::tuning;
 tuning! {
     /// Results for people, on the terminal.
     "overview" {
-        /// Names that are shown.
+        /// Most names of parts that share a tolerance.
         named_assemblies: usize = 8, moves "the overview of a run";
         /// Share of a band's width that held-out answers of a smooth response do not miss a surrogate by.
         abrupt: f64 = 0.1, moves "warnings of programs that answer abruptly";
-        /// Lines that fit a screen.
+        /// Most lines about excitations: they fit a screen.
         excitation_lines: usize = 12, moves "the overview of a run";
         /// Where functions move an output no further than this, constants are enough.
         constants_are_enough: f64 = 1.005, moves "the overview of a run";

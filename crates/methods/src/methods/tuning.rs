@@ -25,7 +25,7 @@ tuning! {
         /// How much further a polynomial may be from a function with a kink than it is at validation samples: it is
         /// worst at the kink, and there they need not be.
         between_kinks: f64 = 3.0, moves "which bands are contradicted by values";
-        /// Most points along an axis.
+        /// Most points of a scan along an axis.
         most_points: usize = 1_000_000, moves "which models are refused";
         /// Points along an axis where a model asks for none, the paper's.
         points: usize = 30, moves "scanned bounds of models that ask for no number";

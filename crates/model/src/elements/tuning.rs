@@ -25,11 +25,11 @@ tuning! {
         line_along_face: f64 = 1e-4, moves "bounds of models with contacts of boxes";
         /// Square of a component of a unit vector below which it passes no plane.
         no_passing: f64 = 1e-30, moves "bounds of models with contacts of boxes";
-        /// ε of a face and a plane.
+        /// ε of a face and a plane, in the equations of contacts of cylinders.
         flat_face: f64 = 1e-3, moves "bounds of models with contacts of cylinders";
         /// Angle of a line to a face or the side below which it counts as parallel.
         line_along_cylinder: f64 = 1e-4, moves "bounds of models with contacts of cylinders";
-        /// Halvings of a line.
+        /// Halvings of a line in the search for its place nearest to a cylinder.
         halvings_of_line: i32 = 16, moves "bounds of models with contacts of cylinders";
         /// Square of the sine or cosine of an angle that counts as none.
         no_angle: f64 = 1e-30, moves "bounds of models with contacts of cylinders";
@@ -49,8 +49,8 @@ tuning! {
         parallel_rods: f64 = 1e-4, moves "bounds of models with contacts of rods";
         /// Most corners of one contact: each has instructions of its own.
         corners_of_contact: usize = 256, moves "which contacts are refused";
-        /// Straight pieces of ground.
-        pieces_of_ground: u32 = 160, moves "bounds of models with contacts of ground";
+        /// Straight pieces of ground that a drawing shows.
+        pieces_of_ground: u32 = 160, moves "drawings and reports of ground";
         /// ε over R − r, in the equations of contacts of circles within one another.
         centred_touch: f64 = 1e-4, moves "bounds of models with contacts of circles";
         /// Order n of a delay that gives none.

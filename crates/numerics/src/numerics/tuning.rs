@@ -24,7 +24,7 @@ tuning! {
         drop: f64 = 1e-3, moves "ranges beside jumps";
         /// After so many halvings two numbers in [−1, 1] have no other between them.
         halvings_of_brink: usize = 64, moves "ranges beside jumps";
-        /// Most rounds over all multipliers.
+        /// Most rounds over all multipliers of constraints in a search for the cheapest sizes.
         rounds_of_cheapest: usize = 400, moves "tolerances that are found";
         /// Change of the multipliers at which they have settled.
         settled_multipliers: f64 = 1e-10, moves "tolerances that are found";
@@ -38,17 +38,17 @@ tuning! {
         /// Least rate on the way, as a share of the mean where samples are: where the course all but rests, times tell
         /// no places.
         slowest_course: f64 = 0.05, moves "bounds of coordinates that turn";
-        /// Fewest rows of a way.
+        /// Fewest rows of a course's way.
         fewest_rows: usize = 4, moves "bounds of coordinates that turn";
-        /// Fewest rows that are taken beside a way.
+        /// Fewest rows that are taken beside a course's way.
         fewest_rows_beside: usize = 32, moves "bounds of coordinates that turn";
-        /// Places within a piece at which it has to rise.
+        /// Times within a piece of a course at which it has to rise.
         looks: usize = 4, moves "bounds of coordinates that turn";
         /// Rows that a piece is made through, at either side, and its terms: a value and a rate of each.
         rows_beside: usize = 2, moves "bounds of coordinates that turn";
         /// The last step of the search for a time, as a share of the piece.
         close_time: f64 = 1e-7, moves "bounds of coordinates that turn";
-        /// Most steps of the search for a time.
+        /// Most steps of the search for the time at which a course is at a place.
         steps_to_time: usize = 64, moves "bounds of coordinates that turn";
         /// Share of the rate over all higher degrees that the rate at the highest has at least.
         caution: f64 = 0.7, moves "errors of bounds";
@@ -86,16 +86,16 @@ tuning! {
         stays: f64 = 1e-9, moves "ranges, within their error";
         /// Neighbours that are nearer than this tell no peak from the best place.
         finest: f64 = 1e-5, moves "ranges, within their error";
-        /// Most steps of the search for an end.
+        /// Most steps of the search for an end of a range.
         steps_to_end: usize = 16, moves "ranges, within their error";
         /// A lattice is too coarse along an axis where a value is further than this share of the range from what those
         /// beside it tell: fewer than eight points to a wave.
         coarse: f64 = 0.03, moves "ranges, within their error";
         /// What a check may find beyond the range, as a share of it, before the lattice is made finer.
         beyond_range: f64 = 1e-4, moves "ranges, within their error";
-        /// Points of the lattice for each point of its check.
+        /// Points of a lattice for each point of its check.
         lattice_points_a_check: usize = 4, moves "ranges, within their error";
-        /// Fewest points of the check.
+        /// Fewest points of the check of a lattice.
         least_checks: usize = 8, moves "ranges, within their error";
         /// Local extremes that are refined at once for each end.
         candidates: usize = 6, moves "ranges, within their error";
@@ -106,7 +106,7 @@ tuning! {
         left_candidate: f64 = 1e-5, moves "ranges, within their error";
         /// Most points of a lattice, by the number of parameters.
         lattice_points: [usize; 3] = [4097, 16_641, 17_576], moves "ranges, within their error";
-        /// Most terms: the work grows with their cube.
+        /// Most terms of a polynomial that is fitted to values and derivatives: the work grows with their cube.
         most_terms: usize = 1000, moves "surrogates of many parameters";
         /// Equations for each term, at least: with two, what the terms lack went into products by tens of their size.
         equations_a_term: usize = 4, moves "surrogates of many parameters";
@@ -117,7 +117,7 @@ tuning! {
         ridge: f64 = 1e-10, moves "surrogates of many parameters";
         /// Most sweeps over the axes in a search for a local maximum.
         sweeps: usize = 30, moves "surrogates of many parameters";
-        /// Rows of the polynomial.
+        /// Rows of the polynomial that gives values between rows.
         rows_of_interpolation: usize = 6, moves "values between rows, and their errors";
         /// Rows of the coarser polynomial that tells its error.
         rows_of_coarser: usize = 4, moves "values between rows, and their errors";
@@ -129,16 +129,16 @@ tuning! {
         zero_diagonal: f64 = 1e-10, moves "fits, within rounding";
         /// A sample with this leverage or more is met by any fit, which says nothing of a fit without it.
         most_leverage: f64 = 1.0 - 1e-9, moves "fits, within rounding";
-        /// Highest level, which is a degree.
+        /// Highest level of nested nodes, which is a degree.
         max_level: u8 = 128, moves "which degrees sparse grids can have";
         /// What a violated limit costs, in multiples of the goals' change over the box.
         penalty: f64 = 1e4, moves "nominal values that are found";
         /// Pivots by the largest coefficient, for each row and column; those after them are by Bland's rule, which
         /// never circles.
         pivots_by_largest: usize = 20, moves "nominal values that are found";
-        /// Most pivots, for each row and column.
+        /// Most pivots of a linear program, for each row and column.
         most_pivots: usize = 200, moves "nominal values that are found";
-        /// Coefficients below this are rounding.
+        /// Coefficients of a linear program below this are rounding.
         rounding_of_coefficients: f64 = 1e-11, moves "nominal values that are found";
         /// Orders below this are not that of the scheme at all.
         least_order: f64 = 1.5, moves "errors of time steps";
@@ -146,34 +146,34 @@ tuning! {
         no_order: f64 = 0.25, moves "errors of time steps";
         /// Where the order is not that of the scheme, the largest difference counts so many times.
         of_differences: f64 = 1.5, moves "errors of time steps";
-        /// How much nearer the next neighbours are.
+        /// Factor by which the next neighbours of a peak's best point are nearer.
         nearer: f64 = 0.25, moves "ranges, within their error";
         /// Factor by which neighbours that look beyond a peak are further away.
         further: f64 = 2.0, moves "ranges, within their error";
         /// Largest distance of neighbours that look beyond a peak, in ξ.
         furthest: f64 = 0.5, moves "ranges, within their error";
-        /// For so many axes all faces are looked at.
+        /// Most axes for which a peak is looked for on all faces of the box.
         most_faces: usize = 3, moves "ranges, within their error";
-        /// Most changes of faces for each axis.
+        /// Most changes of faces for each axis in the search for a peak.
         changes_of_faces: usize = 8, moves "ranges, within their error";
         /// What a direction that bends upwards is shifted by at first, as a share of the bends.
         shift: f64 = 1e-3, moves "ranges, within their error";
         /// What a step gains less than, as a share of all gain, is none.
         settled_gain: f64 = 1e-12, moves "ranges, within their error";
-        /// Grid intervals for each degree.
+        /// Intervals of the grid on which a polynomial is ranged, for each degree.
         density: usize = 16, moves "tight ranges of polynomials, within their error";
         /// Fewest intervals for one, two and three parameters: what makes the margins of low degrees small too, as far
         /// as it costs little. For more parameters there is no grid.
         min_intervals: [usize; 3] = [512, 128, 64], moves "tight ranges of polynomials, within their error";
         /// Most points of a grid: three parameters of degree 6.
         max_grid_points: usize = 1 << 20, moves "tight ranges of polynomials, within their error";
-        /// Most intervals.
+        /// Most intervals of an integral.
         most_intervals: usize = 4000, moves "accuracy of integrals";
         /// Rows of which less than this share is left are dependent.
         dependent_row: f64 = 1e-9, moves "which constraints count as dependent";
         /// Most axes of which all combinations of middle and ends are simulated.
         few_axes: usize = 3, moves "validation samples";
-        /// Corners that are simulated, of more axes.
+        /// Corners that are simulated as validation samples, of more axes.
         most_corners: usize = 16, moves "validation samples";
         /// Points inside the box at which a surrogate is held against simulations that it was not made from.
         held_out: usize = 8, moves "validation samples";
@@ -181,7 +181,7 @@ tuning! {
         largest_shard: usize = 16384, moves "memory of scans";
         /// Fewest samples of a shard, but for the last.
         least_shard: usize = 2048, moves "memory of scans";
-        /// Points that a sum is tried at.
+        /// Points at which functions are tried to be sums of functions of fewer parameters.
         tried_points: usize = 4, moves "which parameters act together";
         /// A difference below this share of the values' range is none, rounding aside.
         no_difference: f64 = 1e-10, moves "which parameters act together";

@@ -35,12 +35,12 @@ tuning! {
         quiet: Duration = Duration::from_millis(250), moves "how soon the studio follows its text";
         /// Time between two questions whether the studio has ended.
         between_looks_of_desk: Duration = Duration::from_millis(100), moves "how soon the studio follows its text";
-        /// Time that an answer may take.
+        /// Time that an answer of the language server may take.
         patience_of_language: Duration = Duration::from_secs(30),
             moves "which requests to the language server are given up";
         /// Time between two questions of a waiting worker whether it is to end.
         between_looks_of_requests: Duration = Duration::from_millis(50), moves "how soon the studio answers";
-        /// Time between two questions whether to end.
+        /// Time between two questions of the server whether to end.
         between_looks_of_server: Duration = Duration::from_millis(100), moves "how soon the studio ends";
         /// Time between two looks at the files.
         between_looks_at_files: Duration = Duration::from_millis(300), moves "how soon the studio sees a changed file";

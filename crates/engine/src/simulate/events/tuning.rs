@@ -61,7 +61,7 @@ tuning! {
         same_instant: f64 = 1e-9, moves "which motions are cut at events";
         /// Samples after the first of which one has to meet an event.
         deciding_samples: usize = 8, moves "which motions are cut at events";
-        /// Most words.
+        /// Most words, each a sequence of events, that the motions of a box may spell.
         most_words: usize = 6, moves "which motions are cut at events";
         /// Parameters, at most, of boxes with several words: each word costs a surrogate, and ranges of many
         /// parameters take long.

@@ -19,7 +19,7 @@ tuning! {
         still_of_first_order: f64 = 1e-7, moves "modes, within rounding";
         /// Eigenvalues whose imaginary part is below this share are real.
         real_eigenvalue: f64 = 1e-14, moves "modes, within rounding";
-        /// Relative error of squares.
+        /// Relative error of mean squares of responses.
         accuracy_of_squares: f64 = 1e-10, moves "responses to random excitations";
         /// Parts of a wide band that are integrated alone, before modes and kinks divide them: a decade has five.
         parts_of_band: f64 = 5.0, moves "responses to random excitations";

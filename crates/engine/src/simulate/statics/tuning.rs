@@ -5,7 +5,7 @@ use symdiff::constants::tuning;
 tuning! {
     /// Positions of equilibrium.
     "simulate: statics" {
-        /// Corrections before it is given up.
+        /// Corrections of an equilibrium before it is given up.
         max_corrections: usize = 400, moves "which equilibria are found";
         /// Corrections of a coordinate, in its scale, that are taken as Newton's method says.
         near_correction: f64 = 0.1, moves "which equilibria are found";

@@ -7,7 +7,7 @@ tuning! {
     "simulate: step" {
         /// Corrections with the step's first factorisation before each gets its own.
         frozen_corrections: usize = 4, moves "results within the iteration's tolerance, and time";
-        /// Corrections before the iteration is given up.
+        /// Corrections of a step before its iteration is given up.
         max_corrections: usize = 12, moves "results within the iteration's tolerance, and time";
         /// Error of positions at which the iteration ends, relative to the coordinate's scale: the last correction in
         /// position units times the observed contraction.

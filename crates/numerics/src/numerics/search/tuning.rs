@@ -15,7 +15,7 @@ tuning! {
         strides: [f64; 3] = [0.1, 0.35, 1.0], moves "ranges of functions of many parameters";
         /// Climbs to one extreme from different starts, without and with those of a neighbour.
         starts: (usize, usize) = (24, 2), moves "ranges of functions of many parameters";
-        /// Starts are so far apart along some axis.
+        /// Distance along some axis by which starts of climbs are apart, in ξ.
         starts_apart: f64 = 0.5, moves "ranges of functions of many parameters";
         /// With a neighbour's extremes, other starts are tried that are within this share of the range of the best.
         promising: f64 = 0.05, moves "ranges of functions of many parameters";
@@ -23,7 +23,7 @@ tuning! {
         others: usize = 4, moves "ranges of functions of many parameters";
         /// Points of the low-discrepancy sequence for each parameter, without and with a neighbour's extremes.
         scattered: (usize, usize) = (32, 2), moves "ranges of functions of many parameters";
-        /// Most rounds of a climb.
+        /// Most rounds of a climb to an extreme.
         rounds: usize = 12, moves "ranges of functions of many parameters";
         /// A climb ends where a round neither promises nor brings this share of the range.
         tolerance: f64 = 2e-4, moves "ranges of functions of many parameters";

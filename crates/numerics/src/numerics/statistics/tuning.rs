@@ -15,7 +15,7 @@ tuning! {
         longest_step: f64 = 1.5, moves "shares of failing products";
         /// Places nearer to each other than this are one.
         places_apart: f64 = 0.7, moves "shares of failing products";
-        /// Shifts of the lattice.
+        /// Random shifts of a lattice of samples: the replicates tell sampling errors.
         replicates: usize = 16, moves "statistics, and their sampling errors";
         /// Largest normal score up to which a law without a closed quantile is tabulated.
         farthest_score: i32 = 9, moves "samples of laws without a closed quantile";
@@ -23,9 +23,9 @@ tuning! {
         per_score: i32 = 64, moves "samples of laws without a closed quantile";
         /// Half a step for slopes at the table's points.
         step_of_table: f64 = 1e-4, moves "samples of laws without a closed quantile";
-        /// Points of a replicate.
+        /// Points of a replicate of a rare share.
         points: usize = 1 << 13, moves "rare shares of failing products";
-        /// Directions of a replicate.
+        /// Directions of a replicate of directional sampling.
         directions: usize = 1 << 8, moves "rare shares of failing products";
         /// Directions of a replicate toward points that fail.
         toward_failing: usize = 256, moves "rare shares of failing products";
@@ -50,15 +50,15 @@ tuning! {
         farthest_likeliest: f64 = 8.0, moves "rare shares of failing products";
         /// Steps along a ray in which changes of sign are looked for.
         steps_of_ray: usize = 20, moves "rare shares of failing products";
-        /// Steps to each change of sign.
+        /// Steps to each change of sign along a ray.
         secants: usize = 5, moves "rare shares of failing products";
         /// How far beyond the usual length of a point in so many dimensions a ray leads.
         beyond_usual: f64 = 8.0, moves "rare shares of failing products";
-        /// Samples of a replicate in each level.
+        /// Samples of a replicate in each level of subset simulation.
         samples_of_level: usize = 500, moves "rare shares of failing products";
         /// Samples of a level that begin the next one.
         seeds_of_level: usize = 50, moves "rare shares of failing products";
-        /// Levels at most: less than 1e-16 fails then.
+        /// Most levels of subset simulation: less than 1e-16 fails then.
         levels: usize = 17, moves "rare shares of failing products";
         /// Acceptance of a chain that moves best.
         accepted: f64 = 0.44, moves "rare shares of failing products";

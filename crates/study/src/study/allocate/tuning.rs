@@ -24,7 +24,7 @@ tuning! {
         tightest: f64 = 0.01, moves "tolerances that are found";
         /// Digits of a tolerance that was found.
         digits: i32 = 4, moves "tolerances that are found";
-        /// Most studies that confirm.
+        /// Most studies that confirm tolerances.
         confirming_rounds: usize = 4, moves "tolerances that are found";
         /// Share of a nominal margin that a study may leave before another round looks for more.
         unused: f64 = 5e-3, moves "tolerances that are found";
@@ -61,7 +61,7 @@ tuning! {
         raised_orders: usize = 3, moves "which surrogate tolerances are found by";
         /// A difference quotient's step, as a share of a multiple.
         step_of_difference: f64 = 1e-3, moves "tolerances that are found";
-        /// Places nearer than this are one.
+        /// Worst cases whose places are nearer than this are one, in ξ.
         same_place: f64 = 0.05, moves "tolerances that are found";
     }
 }

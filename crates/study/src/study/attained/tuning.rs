@@ -9,7 +9,7 @@ tuning! {
         fewest_parameters: usize = 6, moves "bounds of models with many parameters";
         /// Most ends that are climbed to from three points; more rows are climbed to from samples of those.
         followed_ends: usize = 128, moves "bounds of models with many parameters";
-        /// Steps of a climb.
+        /// Most steps of a climb along gradients.
         steps_of_climb: usize = 16, moves "bounds of models with many parameters";
         /// How often ends are climbed to from samples that others found.
         shared_rounds: usize = 3, moves "bounds of models with many parameters";

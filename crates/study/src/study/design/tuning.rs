@@ -69,11 +69,11 @@ tuning! {
         price_of_violation: f64 = 5.0, moves "nominal values that are found";
         /// Steps that are tried again with the cases that they showed, before the trust region shrinks.
         tried_again: usize = 4, moves "nominal values that are found";
-        /// Most steps of a search.
+        /// Most steps of a local search for an optimum.
         steps_of_search: usize = 120, moves "nominal values that are found";
         /// Optima nearer than this, as a share of the region along each axis, are one.
         same_optimum: f64 = 0.02, moves "nominal values that are found";
-        /// Samples.
+        /// Samples by which a share of the production is estimated.
         samples_of_share: usize = 1 << 12, moves "nominal values that are found for a yield";
         /// If there is no surrogate over a region, one about the same middle is tried that is this share of it.
         narrower_region: f64 = 0.5, moves "nominal values that are found";

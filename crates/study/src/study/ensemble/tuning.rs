@@ -11,11 +11,11 @@ tuning! {
         times_a_step: usize = 8, moves "outputs between rows";
         /// Times that are observed at once.
         times_at_once: usize = 64, moves "time only";
-        /// Rows of a block.
+        /// Rows of a block of jets.
         rows_of_jets: usize = 64, moves "memory of jets";
         /// Values (rows × lines × samples) that one block holds.
         block_values: usize = 1 << 20, moves "memory of runs";
-        /// Most rows of a block.
+        /// Most rows of a block of samples.
         most_rows: usize = 64, moves "memory of runs";
         /// A range that is narrower than this, relative to the model's size and the run's duration, is rounding:
         /// Newton's iteration ends at 1e-12 or so.

@@ -5,7 +5,7 @@ use symdiff::constants::tuning;
 tuning! {
     /// Ends over functions of time.
     "study: excited" {
-        /// Halvings of a step that is worse.
+        /// Times that a step of a climb that is worse is halved.
         halvings: i32 = 4, moves "ends over functions of time";
         /// Least gain of a step, as a share of the gain that the first one promised.
         worth_of_step: f64 = 1e-4, moves "ends over functions of time";
@@ -16,9 +16,9 @@ tuning! {
         kernels_at_once: usize = 128, moves "memory of searches over functions of time";
         /// Rows in which an output's end is followed first; those between learn from them.
         followed_rows: usize = 8, moves "ends over functions of time";
-        /// Steps of a climb.
+        /// Most steps of a climb over functions of time.
         steps_of_climb: usize = 24, moves "ends over functions of time";
-        /// Steps of a climb from a neighbour's function.
+        /// Most steps of a climb from the function of a neighbouring row.
         steps_of_learnt: usize = 8, moves "ends over functions of time";
         /// How often ends are climbed to from elsewhere.
         rounds: usize = 3, moves "ends over functions of time";

@@ -7,7 +7,7 @@ tuning! {
     "study: explain" {
         /// Instructions a step up to which a model is compiled again to count the saving.
         counted: usize = 30_000, moves "the list of decisions of `explain`";
-        /// Names told of many.
+        /// Most names that a decision tells.
         named: usize = 8, moves "the list of decisions of `explain`";
         /// A model is compiled once more for each of its effects as long as that makes no more instructions than this.
         most_instructions: usize = 3_000_000, moves "the costs of effects of `explain`";

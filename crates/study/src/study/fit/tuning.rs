@@ -9,9 +9,9 @@ tuning! {
         starts: usize = 8, moves "parameters that are estimated";
         /// Most steps from each start on a surrogate.
         steps: usize = 40, moves "parameters that are estimated";
-        /// Most steps with simulations.
+        /// Most steps with simulations that polish an estimate.
         polishing_steps: usize = 4, moves "parameters that are estimated";
-        /// Boxes around the estimate.
+        /// Most boxes around the estimate over which surrogates are made.
         boxes: usize = 10, moves "parameters that are estimated";
         /// Share of the noise that the surrogate's error may be before another box is tried.
         rough: f64 = 0.05, moves "parameters that are estimated";
@@ -27,9 +27,9 @@ tuning! {
         short_step: f64 = 1e-3, moves "parameters that are estimated";
         /// Smallest eigenvalue of JᵀJ, relative to the largest, below which a direction is not determined.
         singular: f64 = 1e-13, moves "parameters that are estimated";
-        /// Most nodes of a polynomial.
+        /// Most nodes of a polynomial that stands for a surrogate.
         most_nodes: usize = 4096, moves "consistent sets";
-        /// Highest degree along an axis.
+        /// Highest degree along an axis of a polynomial that stands for a surrogate.
         most_degree: usize = 14, moves "consistent sets";
         /// Share of the noise by which a polynomial may differ from the surrogate while a set is approached.
         coarse: f64 = 1e-3, moves "consistent sets";
@@ -46,7 +46,7 @@ tuning! {
         rounding: f64 = 1e-9, moves "consistent sets";
         /// Extent of the box in which least squares begin, in multiples of the consistent set's.
         around: f64 = 4.0, moves "parameters that are estimated";
-        /// Cells of the raster along either parameter.
+        /// Cells along either parameter of the raster that shows a consistent set.
         cells: usize = 160, moves "pictures of consistent sets";
         /// Axes that fit the set no better than this share of their volume are the last.
         shrunk: f64 = 0.6, moves "consistent sets";
@@ -70,7 +70,7 @@ tuning! {
         boxes_of_factor: usize = 4000, moves "rows that no parameters explain";
         /// Rows that are as bad as the worst at the best parameters, up to this share.
         as_bad: f64 = 0.05, moves "rows that no parameters explain";
-        /// Rows that are left out, one at a time.
+        /// Most rows that are left out, one at a time, to find those that nothing explains.
         left_out_rows: usize = 6, moves "rows that no parameters explain";
     }
 }

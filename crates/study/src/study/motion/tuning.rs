@@ -9,14 +9,14 @@ tuning! {
         most_arrows: usize = 40, moves "arrows in reports";
         /// Straight lines between poses are near enough at this share of the model's size.
         near_pose: f64 = 2e-4, moves "motions in reports";
-        /// Fewest poses.
+        /// Fewest poses of a motion that is shown.
         fewest_poses: usize = 24, moves "motions in reports";
-        /// Most poses.
+        /// Most poses of a motion that is shown.
         most_poses: usize = 600, moves "motions in reports";
         /// Numbers of two bytes that the motions of a report come to, about: with base64 it keeps below 2 MB beside
         /// its plots.
         report_size: usize = 300_000, moves "motions in reports";
-        /// Steps of one search.
+        /// Most steps of a search for the configuration that is nearest to a wanted one.
         steps_of_search: usize = 25, moves "poses that are dragged";
         /// Change of a coordinate for a derivative, in its scale: the error of a difference is about that of rounding.
         step_of_difference: f64 = 1e-7, moves "poses that are dragged";

@@ -9,7 +9,7 @@ tuning! {
         much_further: f64 = 4.0, moves "bounds of reduced outputs";
         /// Factor by which the estimate of a dip between rows may be wrong.
         safety_of_dip: f64 = 2.0, moves "verdicts of requirements over time";
-        /// Most numbers that are kept.
+        /// Most numbers of reduced outputs that are kept, so that motions are not simulated twice.
         most_kept: usize = 1 << 24, moves "memory of reduced outputs";
         /// Samples evaluated by one thread at once. Fixed, so that results do not depend on the number of threads.
         samples_at_once: usize = 512, moves "time only";
@@ -17,7 +17,7 @@ tuning! {
         most_windows: usize = 8, moves "bounds of reduced outputs";
         /// A dip between two humps cuts the time where it is deeper than this share of the range.
         deep: f64 = 0.02, moves "bounds of reduced outputs";
-        /// Most rounds after the first.
+        /// Most rounds of a study that refines itself, after the first.
         rounds: usize = 5, moves "studies that refine themselves";
         /// Amount by which a degree grows from round to round.
         more_degrees: usize = 2, moves "studies that refine themselves";

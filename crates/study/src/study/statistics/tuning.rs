@@ -7,17 +7,17 @@ tuning! {
     "study: statistics" {
         /// A surrogate reaches as many standard deviations to either side of a normal law: 2e-9 of it lies beyond.
         sigmas_of_surrogate: f64 = 6.0, moves "which box surrogates of statistics have";
-        /// Samples, at most.
+        /// Most samples of the surrogate of a reduced output.
         most_samples_of_numbers: usize = 1 << 18, moves "statistics of reduced outputs";
         /// Samples where a model asks for no number: the quantiles of a normal law's three deviations need 2731.
         samples_of_random: usize = 1 << 12, moves "statistics of random excitations";
         /// Most numbers that are kept: samples times rows times outputs.
         most_numbers_of_random: usize = 1 << 26, moves "which statistics are refused";
-        /// Samples of one seed have streams of their own.
+        /// Most samples under random excitations: those of one seed have streams of their own.
         most_realisations: usize = 1 << 24, moves "which statistics are refused";
         /// Samples that are simulated with halved steps too.
         halved: usize = 16, moves "errors of statistics of random excitations";
-        /// Samples of margins, at most.
+        /// Most samples of the surrogates of margins.
         most_samples_of_margins: usize = 1 << 18, moves "shares that fulfil requirements";
         /// If fewer samples than this fail, samples are drawn where it fails.
         few_failing: usize = 400, moves "shares that fulfil requirements";
@@ -44,7 +44,7 @@ tuning! {
         /// Statistics over time have one in so many of the samples: quantiles are bands there. The row in which an
         /// output varies most has all.
         over_time: usize = 16, moves "statistics of outputs";
-        /// Numbers that all samples hold, at most.
+        /// Most numbers that all samples hold together.
         most_numbers: usize = 1 << 25, moves "which statistics have fewer samples";
         /// Samples, at most, where each costs a loop closure.
         closed_samples: usize = 1 << 14, moves "statistics of outputs";

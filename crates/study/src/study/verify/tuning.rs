@@ -7,7 +7,7 @@ tuning! {
     "study: verify" {
         /// Instants at which powers are taken.
         instants_of_power: usize = 64, moves "balances of power";
-        /// Instants, as shares of the motion.
+        /// Instants at which derivatives are checked, as shares of the motion.
         instants_of_derivatives: [f64; 2] = [0.31, 0.77], moves "checks of derivatives";
         /// Differences are over this share of a variable's scale to both sides: their errors are its square, 1e-24, of
         /// the third derivative, and the rounding of 32 digits over it, 1e-20.
@@ -29,7 +29,7 @@ tuning! {
         shortenings: i32 = 3, moves "observed orders";
         /// Most steps a row along the whole motion, if shortening does not help.
         many_steps: usize = 1 << 11, moves "observed orders";
-        /// Nodes of the motion.
+        /// Nodes in time of a manufactured motion.
         nodes: usize = 96, moves "manufactured motions";
         /// Nodes of the loads: more where functions are steep.
         nodes_of_loads: [usize; 2] = [96, 384], moves "manufactured motions";
@@ -64,7 +64,7 @@ tuning! {
         parts_without_switch: usize = 8, moves "which part of a motion is manufactured";
         /// Shortest part, in rows of the nominal motion.
         shortest_part: usize = 16, moves "which part of a motion is manufactured";
-        /// Halvings of a later part.
+        /// Times that a part of a run after the first is halved.
         halvings_of_part: usize = 3, moves "which part of a motion is manufactured";
     }
 }

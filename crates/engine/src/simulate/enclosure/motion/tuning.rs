@@ -39,7 +39,7 @@ tuning! {
         large_remainder: f64 = 1e-5, moves "widths of proven bounds, and time";
         /// Last terms in ξ, relative to the size of the velocities, above which the box is too wide for the order.
         large_tail: f64 = 1e-8, moves "widths of proven bounds, and time";
-        /// Most tubes that are tried.
+        /// Most tubes about an approximation that are tried for a proof.
         most_tubes: usize = 4, moves "widths of proven bounds, and time";
         /// Factor from the bound that one tube gave to the next tube. Much more than is needed here, for a checker
         /// whose bounds are larger; distances are far too small for it to matter to the derivatives.

@@ -18,7 +18,7 @@ tuning! {
         near_end: f64 = 0.5, moves "bounds within a tolerance";
         /// Indices are added whose expected surplus is at least this share of the largest.
         added: f64 = 0.3, moves "bounds within a tolerance";
-        /// Fewest nodes that are simulated together.
+        /// Fewest nodes of a sparse grid that are simulated together.
         together: usize = 8, moves "bounds within a tolerance";
         /// Nodes that are there for each that is simulated next, if they are many.
         growth: usize = 8, moves "bounds within a tolerance";

@@ -49,11 +49,11 @@ tuning! {
         enough: f64 = 1e-3, moves "Chebyshev bounds through events";
         /// Values that differ by this share of them are the same.
         rounding: f64 = 1e-9, moves "Chebyshev bounds through events";
-        /// Total degree to begin with.
+        /// Total degree with which polynomials of many parameters begin.
         first_degree: usize = 2, moves "Chebyshev bounds through events";
-        /// Highest degree in a parameter.
+        /// Highest degree in a parameter of polynomials of many parameters.
         highest_degree: u8 = 12, moves "Chebyshev bounds through events";
-        /// Most terms.
+        /// Most terms of a polynomial of many parameters.
         most_terms: usize = 1000, moves "Chebyshev bounds through events";
         /// Rate at which coefficients fall at least, where two of an axis tell less.
         slowest_fall: f64 = 0.9, moves "Chebyshev bounds through events";
@@ -77,9 +77,9 @@ tuning! {
         step_of_surfaces: f64 = 1e-6, moves "errors of Chebyshev bounds through events";
         /// An end beside a surface is moved with it where it is nearer than so many times the surface's error.
         near_end: f64 = 2.0, moves "errors of Chebyshev bounds through events";
-        /// Candidates of each round.
+        /// Candidates of each round in which samples are added.
         candidates: usize = 512, moves "Chebyshev bounds through events";
-        /// Corners among the candidates.
+        /// Corners of the box among the candidates for samples.
         corners: usize = 16, moves "Chebyshev bounds through events";
         /// Halvings of a line on which a level is looked for.
         halvings_of_line: usize = 40, moves "Chebyshev bounds through events";
