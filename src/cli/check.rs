@@ -7,16 +7,13 @@ use serde::Serialize;
 use super::args::{CheckArgs, Format};
 use super::console::{BOLD, Console, coordinates, count, to_json};
 use super::load::Given;
+use super::tuning::TUNING;
 use super::{Failure, Status, load, structure, tree};
 use crate::model::{self, Description};
 use crate::results::{AssemblySummary, Structure};
 use crate::simulate::Assembled;
 use crate::study::{self, Ready, RunError};
 use crate::syntax::{Code, Coded, Diagnostics, harmless};
-
-/// More names than this are counted, the first few of them named.
-const MOST_NAMED: usize = 12;
-const FEW: usize = 5;
 
 /// Result for a model; an element of the JSON output.
 #[derive(Serialize)]
@@ -251,8 +248,12 @@ impl Counts {
         };
         let others = |names: &[String], what: &str| match names {
             [] => String::new(),
-            names if names.len() > MOST_NAMED => {
-                format!(", {what} {} and {} more", names[..FEW].join(", "), names.len() - FEW)
+            names if names.len() > TUNING.most_named => {
+                format!(
+                    ", {what} {} and {} more",
+                    names[..TUNING.first_named].join(", "),
+                    names.len() - TUNING.first_named
+                )
             }
             names => format!(", {what} {}", names.join(", ")),
         };

@@ -5,15 +5,12 @@ use super::console::{BOLD, Console, count, file_names};
 use super::question::{answer, ask};
 use super::run::with_folder;
 use super::{Failure, Status, interrupt, load};
-use crate::export::{DESIGN_OVERLAY, rounded, shown_unit, write_design};
+use crate::export::{self, DESIGN_OVERLAY, rounded, shown_unit, write_design};
 use crate::grammar::display_unit::ShownUnit;
 use crate::overview::{Align, Table};
 use crate::overview::{requirements, short};
 use crate::results::{Allocation, Criterion, DesignPoint, DesignStudy, DesignTrade, ToleranceZone};
 use crate::study::{self, DesignError, DesignOptions, RunError};
-
-/// A smaller gain is not printed.
-const SHOWN: f64 = 5e-4;
 
 pub(super) fn design(args: DesignArgs, console: &mut Console) -> Result<Status, Failure> {
     let given = args.set.given()?;
@@ -93,7 +90,7 @@ fn overview(found: &DesignStudy) -> String {
         found.confirming,
     );
     text += &points(found);
-    if let Some(gain) = found.gain().filter(|gain| gain.abs() >= SHOWN) {
+    if let Some(gain) = found.gain().filter(|gain| gain.abs() >= export::tuning::TUNING.shown_gain) {
         let (value, words) = match found.is_priced() {
             true => ("cost", ["less", "more"]),
             false => ("worst case", ["better", "worse"]),

@@ -3,6 +3,7 @@
 use super::args::{ExplainArgs, Format};
 use super::console::{BOLD, Console, count, to_json};
 use super::effects::adds;
+use super::tuning::TUNING;
 use super::{Failure, Status, effects, joints, load, methods};
 use crate::elements::JointKind;
 use crate::overview::{Align, Table};
@@ -162,12 +163,11 @@ fn decisions(decisions: &[Decision]) -> String {
 
 /// Names, indented, in lines of a readable length.
 fn list(names: &[String]) -> String {
-    const WIDTH: usize = 100;
     let mut text = String::new();
     let mut line = String::new();
     for (i, name) in names.iter().enumerate() {
         let comma = if i + 1 < names.len() { "," } else { "" };
-        if !line.is_empty() && line.chars().count() + name.chars().count() + 2 > WIDTH {
+        if !line.is_empty() && line.chars().count() + name.chars().count() + 2 > TUNING.width_of_names {
             text += &format!("{line}\n");
             line.clear();
         }

@@ -4,6 +4,7 @@ use super::args::FitArgs;
 use super::console::{BOLD, Console, count, file_names};
 use super::question::{answer, ask};
 use super::run::with_folder;
+use super::tuning::TUNING;
 use super::{Failure, Status, interrupt, load};
 use crate::export::{FIT_OVERLAY, rounded, write_fit};
 use crate::grammar::display_unit::ShownUnit;
@@ -12,9 +13,6 @@ use crate::overview::short;
 use crate::overview::{Align, Table};
 use crate::results::{ConsistentSet, Fit, Unexplained};
 use crate::study::{self, FitError, Measurements, RunError};
-
-/// Rows that are named where none explains them.
-const MOST: usize = 5;
 
 pub(super) fn fit(args: FitArgs, console: &mut Console) -> Result<Status, Failure> {
     let given = args.set.given()?;
@@ -163,7 +161,7 @@ fn contradiction(found: &Fit, unexplained: &Unexplained) -> String {
         found.model,
         short(unexplained.factor)
     );
-    for &(row, excess) in unexplained.alone.iter().take(MOST) {
+    for &(row, excess) in unexplained.alone.iter().take(TUNING.unexplained_rows) {
         let output = &found.outputs[found.rows[row].output];
         let unit = ShownUnit::of(&output.display, &output.unit);
         text += &format!(
@@ -173,8 +171,8 @@ fn contradiction(found: &Fit, unexplained: &Unexplained) -> String {
             unit.text
         );
     }
-    if unexplained.alone.len() > MOST {
-        text += &format!("\n  and {} more", unexplained.alone.len() - MOST);
+    if unexplained.alone.len() > TUNING.unexplained_rows {
+        text += &format!("\n  and {} more", unexplained.alone.len() - TUNING.unexplained_rows);
     }
     if let Some((row, factor)) = unexplained.worst {
         text += &match factor <= 1.0 {

@@ -4,15 +4,13 @@ use super::args::GradientArgs;
 use super::console::{BOLD, Console, file_names};
 use super::question::{answer, ask};
 use super::run::with_folder;
+use super::tuning::TUNING;
 use super::{Failure, Status, interrupt, load};
 use crate::export::{by_influence, shown_derivative, write_gradients};
 use crate::overview::short;
 use crate::overview::{Align, Table};
 use crate::results::{DerivativesAt, Gradients, ReducedGradients};
 use crate::study::{self, GradientError, RunError};
-
-/// Most parameters of an output that are printed.
-const MOST: usize = 30;
 
 pub(super) fn gradient(args: GradientArgs, console: &mut Console) -> Result<Status, Failure> {
     let given = args.set.given()?;
@@ -77,15 +75,15 @@ fn overview(found: &Gradients, shown: &[DerivativesAt<'_>]) -> String {
             ("over half of the interval", Align::Right),
             ("unit", Align::Left),
         ]);
-        for &(parameter, by, influence) in influences.iter().take(MOST) {
+        for &(parameter, by, influence) in influences.iter().take(TUNING.parameters_of_gradient) {
             let parameter = &found.parameters[parameter];
             let (by, of_both) = shown_derivative(own.unit, parameter, by);
             let influence = short(own.unit.of_si(influence));
             table.row([parameter.name.clone(), short(by), of_both, influence, own.unit.text.to_owned()]);
         }
         text += &table.render(2);
-        if influences.len() > MOST {
-            text += &format!("  and {} of less influence\n", influences.len() - MOST);
+        if influences.len() > TUNING.parameters_of_gradient {
+            text += &format!("  and {} of less influence\n", influences.len() - TUNING.parameters_of_gradient);
         }
     }
     text

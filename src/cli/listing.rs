@@ -4,14 +4,14 @@
 use super::Failure;
 use super::console::to_json;
 use super::status::{Status, StatusDocs};
+use super::tuning::tuning;
 use crate::elements::effects::EffectKind;
 use crate::grammar::Sensor;
 use crate::grammar::reference::{self, FunctionDocs, OutputDocs, UnitDocs};
 use crate::overview::{Align, Table};
-use crate::study::tuning;
-use crate::syntax::Code;
-use crate::syntax::tuning::Constant;
+use crate::syntax::{Code, wrapped};
 use serde::Serialize;
+use symdiff::constants::Constant;
 
 /// A list of the language.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,7 +31,7 @@ impl Listing {
             Self::Units => text(&reference::units()),
             Self::Functions => text(&reference::functions()),
             Self::Outputs => text(&outputs()),
-            Self::Tuning => text(&tuning()),
+            Self::Tuning => tuning_text(),
             Self::ExitCodes => text(&Status::ALL.map(Status::docs)),
             Self::Codes => codes_text(),
         }
@@ -46,7 +46,7 @@ impl Listing {
             Self::Units => to_json(&reference::units()),
             Self::Functions => to_json(&reference::functions()),
             Self::Outputs => to_json(&outputs()),
-            Self::Tuning => to_json(&tuning()),
+            Self::Tuning => to_json(&limits()),
             Self::ExitCodes => to_json(&Status::ALL.map(Status::docs)),
             Self::Codes => to_json(&codes()),
         }
@@ -83,6 +83,36 @@ fn outputs() -> Vec<OutputDocs> {
         }));
     }
     outputs
+}
+
+/// A constant, for those who list it.
+#[derive(Serialize)]
+struct Limit {
+    room: &'static str,
+    name: &'static str,
+    value: &'static str,
+    why: &'static str,
+    moves: &'static str,
+}
+
+fn limits() -> Vec<Limit> {
+    let limit = |Constant { room, name, value, why, moves }| Limit { room, name, value, why, moves };
+    tuning().into_iter().map(limit).collect()
+}
+
+/// The constants, room by room: their texts are too long for columns.
+fn tuning_text() -> String {
+    let mut text = String::new();
+    let mut last = "";
+    for Constant { room, name, value, why, moves } in tuning() {
+        if room != last {
+            text += &format!("{}{room}\n", if last.is_empty() { "" } else { "\n" });
+            last = room;
+        }
+        let about = wrapped(&format!("{why} It moves {moves}.")).replace('\n', "\n    ");
+        text += &format!("  {name} = {value}\n    {about}\n");
+    }
+    text
 }
 
 /// A code, for those who list it.
@@ -174,9 +204,8 @@ impl Row<4> for OutputDocs {
 impl Row<5> for Constant {
     const TITLE: &'static str = "Limits and thresholds";
     const INTRODUCTION: &'static str = "Numbers of the program that could be others, by the rooms of the source that have them, with the results that move\n\
-        if one changes. They are compiled in: a result never depends on the machine. The rooms of this list are complete;\n\
-        others have theirs in the source. \
-        `mbint explain --tuning` prints this list.";
+        if one changes. They are compiled in: a result never depends on the machine. Facts, such as coefficients of a method\n\
+        or sizes of a page, are not in it. `mbint explain --tuning` prints this list.";
     const HEADINGS: [(&'static str, Align); 5] = [
         ("room", Align::Left),
         ("name", Align::Left),

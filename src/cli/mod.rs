@@ -44,6 +44,7 @@ mod structure;
 mod studio;
 mod sweep;
 mod tree;
+pub(crate) mod tuning;
 mod verdicts;
 mod verify;
 mod version;

@@ -9,16 +9,8 @@ use std::time::Duration;
 
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
+use super::tuning::TUNING;
 use crate::syntax::harmless;
-
-/// Parts of the bar; finer than a terminal is wide.
-const PARTS: u64 = 10_000;
-
-/// Between two lines where there is no terminal.
-const BETWEEN: Duration = Duration::from_secs(10);
-
-/// Between two drawings of the bar while nothing is reported, so that the time goes on.
-const TICK: Duration = Duration::from_millis(250);
 
 /// A bar on a terminal's standard error, gone when dropped; elsewhere a line every ten seconds.
 pub(super) struct Progress {
@@ -36,7 +28,7 @@ impl Progress {
         let target =
             if visible && terminal { ProgressDrawTarget::stderr_with_hz(10) } else { ProgressDrawTarget::hidden() };
         let name = harmless(name);
-        let bar = ProgressBar::with_draw_target(Some(PARTS), target).with_prefix(name.clone());
+        let bar = ProgressBar::with_draw_target(Some(TUNING.parts_of_bar), target).with_prefix(name.clone());
         let style = ProgressStyle::with_template("{prefix}: {msg}  [{bar:30}] {percent:>3} %{left}");
         if let Ok(style) = style {
             let left = |state: &ProgressState, text: &mut dyn std::fmt::Write| {
@@ -46,7 +38,7 @@ impl Progress {
             bar.set_style(style.progress_chars("=> ").with_key("left", left));
         }
         if visible && terminal {
-            bar.enable_steady_tick(TICK);
+            bar.enable_steady_tick(TUNING.tick);
         }
         let stage = Arc::new(Mutex::new(String::new()));
         let lines = (visible && !terminal).then(|| {
@@ -63,7 +55,7 @@ impl Progress {
         if fraction == 0.0 {
             self.bar.reset();
         }
-        let parts = (fraction.clamp(0.0, 1.0) * PARTS as f64) as u64;
+        let parts = (fraction.clamp(0.0, 1.0) * TUNING.parts_of_bar as f64) as u64;
         if parts > self.bar.position() {
             self.bar.set_position(parts);
         }
@@ -85,8 +77,8 @@ impl Progress {
 /// A line every ten seconds, until there is nobody to end it.
 fn write_lines(name: &str, bar: &ProgressBar, stage: &Mutex<String>, ended: &Receiver<()>) {
     let mut known = None;
-    while ended.recv_timeout(BETWEEN) == Err(RecvTimeoutError::Timeout) {
-        let done = bar.position() as f64 / PARTS as f64;
+    while ended.recv_timeout(TUNING.between_lines) == Err(RecvTimeoutError::Timeout) {
+        let done = bar.position() as f64 / TUNING.parts_of_bar as f64;
         let stage = stage.lock().unwrap_or_else(PoisonError::into_inner).clone();
         // An unchanged state is not repeated.
         if known.as_ref().is_some_and(|known| *known == (stage.clone(), percent(done))) {

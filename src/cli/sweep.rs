@@ -6,6 +6,7 @@ use super::job;
 use super::load::Given;
 use super::request::Settings;
 use super::run::results_of;
+use super::tuning::TUNING;
 use super::{Failure, Status, interrupt, load, verdicts};
 use crate::api::Axis;
 use crate::export::{Sweep, SweepAxis, SweepPoint, prepare_folder, write_sweep};
@@ -13,10 +14,6 @@ use crate::grammar::display_unit::ShownUnit;
 use crate::model::Override;
 use crate::overview::{Align, Table};
 use crate::overview::{band, short};
-
-/// Most values of an axis, and most runs.
-const MOST_VALUES: usize = 10_000;
-const MOST_RUNS: usize = 100_000;
 
 /// A parameter over a range: `l1=0.1..0.2:11`, perhaps with a unit and a tolerance behind it. `None` where the text has
 /// no range.
@@ -30,8 +27,8 @@ fn axis(text: &str) -> Result<Option<Axis>, Failure> {
     let number = |text: &str| text.trim().parse::<f64>().ok().filter(|number| number.is_finite()).ok_or_else(wrong);
     let (lower, upper) = (number(lower)?, number(upper)?);
     let values: usize = values.parse().map_err(|_| wrong())?;
-    if !(2..=MOST_VALUES).contains(&values) {
-        return Err(Failure::wrong(format!("`{text}`: from 2 to {MOST_VALUES} values can be swept")));
+    if !(2..=TUNING.values_of_axis).contains(&values) {
+        return Err(Failure::wrong(format!("`{text}`: from 2 to {} values can be swept", TUNING.values_of_axis)));
     }
     let last = (values - 1) as f64;
     // Weights, so that the ends are exact.
@@ -59,8 +56,8 @@ pub(super) fn sweep(args: SweepArgs, console: &mut Console) -> Result<Status, Fa
     let mut others = overlaid(&args.with, &others)?;
     others.retain(|own| axes.iter().all(|axis| axis.name() != own.name));
     let runs: usize = axes.iter().map(Axis::count).product();
-    if runs > MOST_RUNS {
-        return Err(Failure::wrong(format!("{runs} runs are more than the {MOST_RUNS} of a sweep")));
+    if runs > TUNING.runs_of_sweep {
+        return Err(Failure::wrong(format!("{runs} runs are more than the {} of a sweep", TUNING.runs_of_sweep)));
     }
     let settings = Settings { threads: args.run.threads.number(), yes: args.yes, quiet: true, ..Settings::default() };
     console.without_repetition();

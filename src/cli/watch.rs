@@ -4,19 +4,17 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::thread::sleep;
-use std::time::{Duration, SystemTime};
+use std::time::SystemTime;
 
 use super::console::{BOLD, Console, count};
 use super::job::Done;
 use super::request::{Job, Request};
 use super::run::run_all;
 use super::snapshot::moves;
+use super::tuning::TUNING;
 use super::{Failure, Status, interrupt};
 use crate::export::{Snapshot, moved, snapshot_table};
 use crate::model::{self, is_standard_input};
-
-/// Between two looks at the files.
-const BETWEEN: Duration = Duration::from_millis(200);
 
 /// Tells whether a file is as it was: when it was written, and its length; `None` where there is none.
 type Mark = Option<(SystemTime, u64)>;
@@ -69,7 +67,7 @@ fn changed(request: &Request, before: BTreeMap<PathBuf, Mark>) -> bool {
     // An interruption ends the waiting here, and not the program wherever it is.
     interrupt::keep_results(true);
     while !interrupt::asked() {
-        sleep(BETWEEN);
+        sleep(TUNING.between_looks_at_files);
         if before.iter().any(|(path, mark)| mark_of(path) != *mark) {
             settle(request);
             interrupt::keep_results(false);
@@ -83,7 +81,7 @@ fn changed(request: &Request, before: BTreeMap<PathBuf, Mark>) -> bool {
 fn settle(request: &Request) {
     let mut last = marks(request);
     while !interrupt::asked() {
-        sleep(BETWEEN);
+        sleep(TUNING.between_looks_at_files);
         let now = marks(request);
         if now == last {
             return;

@@ -11,9 +11,16 @@ mod native;
 mod run;
 mod unit;
 
+use symdiff::constants::Constant;
+
 #[cfg(any(unix, windows))]
 pub use native::Fault;
 #[cfg(any(unix, windows))]
 pub use run::answer;
 pub use run::{Access, STEP, Task, Unpacked};
 pub use unit::{BaseUnit, Interface, NotRead, NumberType, Unit, Variable, Version, digest};
+
+/// Constants of units, room by room.
+pub fn tuning() -> Vec<Constant> {
+    [unit::tuning::Tuning::constants(), run::tuning::Tuning::constants()].concat()
+}

@@ -12,4 +12,4 @@ use mbint_study::study;
 
 mod lsp;
 
-pub use lsp::{ServerError, attend, path_of, serve, uri_of};
+pub use lsp::{ServerError, attend, path_of, serve, tuning, uri_of};

@@ -15,4 +15,4 @@ use mbint_study::{results, study};
 
 mod studio;
 
-pub use studio::{Options, StudioError, serve};
+pub use studio::{Options, StudioError, serve, tuning};

@@ -24,11 +24,13 @@
 
 #![cfg_attr(test, allow(clippy::disallowed_methods, reason = "tests compare with the standard library's functions"))]
 
+pub mod constants;
 pub mod eval;
 mod expr;
 pub mod formula;
 mod lower;
 mod slopes;
+pub mod tuning;
 
 pub use eval::double_double::{DoubleDouble, DoubleDoubleMemory};
 pub use eval::interval::Interval;

@@ -1,11 +1,9 @@
 //! Numbers of first derivatives, without their expressions.
 
+use super::tuning::TUNING;
 use crate::eval::jet::{JetMemory, JetSpace};
 use crate::expr::{Expr, Graph};
 use crate::lower::{Input, lower};
-
-/// Symbols by which the derivatives are taken at once.
-const BLOCK: usize = 31;
 
 /// ∂of/∂by where each symbol has the value that `value_of` gives it: a row for each of `of`. A derivative takes a few
 /// operations for each expression, where its own expression would have to be written down.
@@ -16,7 +14,7 @@ pub fn slopes(graph: &Graph, of: &[Expr], by: &[Expr], value_of: impl Fn(Expr) -
     let outputs = of.iter().map(|&value| (value, None)).collect();
     let lowered = lower(graph, &inputs, 0, symbols.len() as u32, &[outputs]);
     let mut rows = vec![Vec::with_capacity(by.len()); of.len()];
-    for block in by.chunks(BLOCK) {
+    for block in by.chunks(TUNING.slopes_at_once) {
         let space = JetSpace::new(block.len(), 1);
         let mut memory = JetMemory::new(&space, lowered.registers, &lowered.constants);
         for (register, &symbol) in symbols.iter().enumerate() {

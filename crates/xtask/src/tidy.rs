@@ -17,23 +17,27 @@ struct Rule {
     violates: fn(path: &str, line: &str) -> usize,
 }
 
-const RULES: [Rule; 5] = [
+const RULES: [Rule; 6] = [
     Rule { name: "comments wider than 120 columns", limit: LIMITS[0], violates: wide_comment },
     Rule { name: "noun clauses of the form \"what is …\"", limit: LIMITS[1], violates: noun_clauses },
     Rule { name: "tuple parameters", limit: LIMITS[2], violates: tuple_parameter },
-    Rule { name: "public types of a name that another one of the crate has", limit: LIMITS[3], violates: |_, _| 0 },
+    Rule { name: "numeric constants outside of `tuning.rs`", limit: LIMITS[3], violates: numeric_constant },
+    Rule { name: "public types of a name that another one of the crate has", limit: LIMITS[4], violates: |_, _| 0 },
     Rule { name: "stray files", limit: 0, violates: |_, _| 0 },
 ];
 
 /// Limits of all rules but the last.
-const LIMITS: [usize; 4] = [0, 60, 21, 64];
+const LIMITS: [usize; 5] = [0, 60, 21, 172, 64];
 
 /// The rules that see more than a line.
-const HOMONYMS: usize = 3;
-const STRAY_FILES: usize = 4;
+const HOMONYMS: usize = 4;
+const STRAY_FILES: usize = 5;
 
 /// Endings of files that programs leave behind.
 const STRAY: [&str; 6] = [".orig", ".rej", ".log", ".LOG.TXT", "_LOG.TXT", ".snap.new"];
+
+/// Types of numbers.
+const NUMBERS: [&str; 12] = ["f32", "f64", "i8", "i16", "i32", "i64", "isize", "u8", "u16", "u32", "u64", "usize"];
 
 /// Words that follow "what" in a noun clause.
 const AFTER_WHAT: [&str; 9] = ["is", "it", "they", "are", "of", "that", "has", "was", "does"];
@@ -108,6 +112,17 @@ fn tuple_parameter(path: &str, line: &str) -> usize {
     usize::from(is_parameter && !line.trim_start().starts_with("let "))
 }
 
+/// A constant of a number that stands beside the code: a fact, such as a coefficient of a tableau or a width of a page.
+/// Limits and thresholds are in the room's `tuning.rs` (decision 0157).
+fn numeric_constant(path: &str, line: &str) -> usize {
+    let is_source = is_rust(path) && (path.starts_with("src/") || path.contains("/src/"));
+    let constant =
+        line.trim_start().split_once("const ").filter(|(before, _)| before.is_empty() || before.starts_with("pub"));
+    let typed = constant.and_then(|(_, rest)| rest.split_once(": ")?.1.split_once(" ="));
+    let counts = |(own, value): (&str, &str)| NUMBERS.contains(&own) && !value.contains("TUNING.");
+    usize::from(is_source && typed.is_some_and(counts))
+}
+
 /// The crate and the name of a type that a line of a file's outermost level makes public.
 fn public_type(path: &str, line: &str) -> Option<(String, String)> {
     let own = if path.starts_with("src/") { "src" } else { path.strip_prefix("crates/")?.split('/').next()? };
@@ -139,6 +154,16 @@ mod tests {
         assert_eq!(named("src/b.rs", "pub(in crate::a) enum Part {"), Some("src Part".to_owned()));
         for line in ["struct Part;", "    pub struct Part;", "pub fn part() {}", "pub use a::Part;"] {
             assert_eq!(named("crates/a/src/b.rs", line), None, "{line}");
+        }
+        for (path, line, times) in [
+            ("crates/a/src/b.rs", "    pub(super) const LEAST: f64 = 1e-3;", 1),
+            ("src/b.rs", "const MOST: usize =", 1),
+            ("crates/a/src/b.rs", "pub const MOST: usize = TUNING.most;", 0),
+            ("crates/a/src/b.rs", "const NAME: &str = \"b\";", 0),
+            ("crates/a/src/b.rs", "/// A const SIZE: usize = 3", 0),
+            ("crates/a/tests/b.rs", "const MOST: usize = 3;", 0),
+        ] {
+            assert_eq!(numeric_constant(path, line), times, "{path}: {line}");
         }
         assert_eq!(tuple_parameter("a.rs", "    (low, high): (f64, f64),"), 1);
         assert_eq!(tuple_parameter("a.rs", "    let (low, high): (f64, f64) = ends;"), 0);

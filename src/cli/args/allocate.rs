@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::{OneRunArgs, SetArgs};
+use crate::cli::tuning::TUNING;
 
 #[derive(Debug, Args)]
 #[command(after_help = ALLOCATE_HELP)]
@@ -36,16 +37,13 @@ pub(in crate::cli) struct AllocateArgs {
     pub yes: bool,
 }
 
-/// The highest yield: of more, what lies beyond six standard deviations counts.
-const MOST: f64 = 0.999_999_9;
-
 pub(super) fn share(text: &str) -> Result<f64, String> {
     let number = match text.trim().strip_suffix('%') {
         Some(percent) => percent.trim().parse::<f64>().map(|percent| percent / 100.0),
         None => text.trim().parse::<f64>(),
     };
     let wrong = "a yield is a share from 50% to 99.99999%, as `99.73%`; beyond, ask for every case";
-    number.ok().filter(|share| (0.5..=MOST + 1e-15).contains(share)).ok_or_else(|| wrong.to_owned())
+    number.ok().filter(|share| (0.5..=TUNING.highest_yield + 1e-15).contains(share)).ok_or_else(|| wrong.to_owned())
 }
 
 fn at_least_one(text: &str) -> Result<f64, String> {

@@ -7,19 +7,17 @@ use clap::Args;
 use super::{methods, parse_override};
 use crate::cli::Failure;
 use crate::cli::load::Given;
+use crate::cli::tuning::TUNING;
 use crate::methods::Proof;
 use crate::model::{Override, read_overlay};
 use crate::results::Method;
 use crate::syntax::{Coded, Diagnostics};
 
-/// Most threads: more than any machine has that mbint runs on; a larger number is a typing error.
-const MOST_THREADS: i64 = 1024;
-
 /// How many threads compute.
 #[derive(Clone, Copy, Debug, Args)]
 pub(in crate::cli) struct Threads {
     /// Number of threads; results do not depend on it [default: one per core].
-    #[arg(short = 'j', long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=MOST_THREADS))]
+    #[arg(short = 'j', long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=TUNING.most_threads))]
     threads: Option<u16>,
 }
 

@@ -7,13 +7,11 @@ use std::path::{Path, PathBuf};
 
 use crate::cli::Failure;
 use crate::cli::args::PointArgs;
+use crate::cli::tuning::TUNING;
 use crate::model::is_standard_input;
 use crate::numerics::{Design, MOST_AXES, ParameterBox};
 use crate::store::AskedPoints;
 use crate::syntax::table::{Cell, Table};
-
-/// Most points of a design.
-const MOST: usize = 1 << 32;
 
 /// The request.
 #[derive(Clone, Debug, PartialEq)]
@@ -52,7 +50,8 @@ impl Points {
             "lhs" => Design::LatinHypercube { seed },
             _ => return Err(wrong()),
         };
-        let count: usize = count.parse().ok().filter(|count| (1..=MOST).contains(count)).ok_or_else(wrong)?;
+        let count: usize =
+            count.parse().ok().filter(|count| (1..=TUNING.points_of_design).contains(count)).ok_or_else(wrong)?;
         Ok(Self::Design { design, count })
     }
 

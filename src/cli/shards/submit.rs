@@ -6,15 +6,10 @@ use std::process::Command;
 
 use crate::cli::args::SubmitArgs;
 use crate::cli::console::{Console, count};
+use crate::cli::tuning::TUNING;
 use crate::cli::{Failure, Status};
 use crate::store::StudyFolder;
 use crate::syntax::is_harmful;
-
-/// Most tasks of an array that every cluster takes: Slurm's default `MaxArraySize` less one.
-const MOST_TASKS: usize = 1000;
-
-/// So many times a task that failed is put into the queue again.
-const MOST_REQUEUES: usize = 3;
 
 /// Writes the scripts of a round into the study's folder, and submits them.
 pub(in crate::cli) fn submit(args: &SubmitArgs, console: &mut Console) -> Result<Status, Failure> {
@@ -53,7 +48,7 @@ struct Job<'a> {
 impl Job<'_> {
     /// The shards, each task every so many of them.
     fn submit_array(&self, missing: &[usize]) -> Result<String, String> {
-        let tasks = missing.len().min(MOST_TASKS);
+        let tasks = missing.len().min(TUNING.most_tasks);
         let list = self.write("shards", &missing.iter().map(|number| format!("{number}\n")).collect::<String>())?;
         let (program, folder) = (quoted(&self.program), quoted(&self.folder));
         let mut script = head("shards");
@@ -65,13 +60,14 @@ impl Job<'_> {
              for shard in $(awk -v t=\"$SLURM_ARRAY_TASK_ID\" 'NR % {tasks} == (t + 1) % {tasks}' {list}); do\n  \
                if ! {program} shard {folder} --index \"$shard\" --threads \"${{SLURM_CPUS_PER_TASK:-1}}\"; then\n    \
                  # The task goes into the queue again.\n    \
-                 if [ \"${{SLURM_RESTART_COUNT:-0}}\" -lt {MOST_REQUEUES} ]; then\n      \
+                 if [ \"${{SLURM_RESTART_COUNT:-0}}\" -lt {requeues} ]; then\n      \
                    scontrol requeue \"${{SLURM_ARRAY_JOB_ID}}_${{SLURM_ARRAY_TASK_ID}}\"\n    \
                  fi\n    \
                  exit 1\n  \
                fi\n\
              done\n",
             last = tasks - 1,
+            requeues = TUNING.most_requeues,
             list = quoted(&list),
         );
         self.sbatch("array.sh", "shards-%A_%a", &script, None)

@@ -10,12 +10,7 @@ use super::flow::Flow;
 use super::majorant::resolvent;
 use super::matrix::{Bounds, Models};
 use super::spaces::{Space, matrix_at};
-
-/// Factor by which B⁻¹ and B may enlarge a distance before B is turned.
-const SKEW: f64 = 100.0;
-
-/// Distance whose growth does not matter.
-const ROUNDING: f64 = 1e-11;
+use super::tuning::TUNING;
 
 /// B, an approximation of its inverse, and r.
 #[derive(Clone, Debug)]
@@ -70,7 +65,7 @@ impl Frame {
         let sizes = directions.bounds(of_box);
         let distance = sizes.times(&radii);
         let enlarged = sizes.times(&inverse.bounds(of_box).times(&distance));
-        if enlarged.iter().zip(&distance).any(|(enlarged, distance)| *enlarged > SKEW * distance) {
+        if enlarged.iter().zip(&distance).any(|(enlarged, distance)| *enlarged > TUNING.skew * distance) {
             let turned = turn(of_box, &directions, &radii)?;
             lost = lost.iter().zip(&turned.lost).map(|(a, b)| up(a + b)).collect();
             inverse = turned.factor.approximate_times(of_box, &inverse);
@@ -89,7 +84,7 @@ impl Frame {
         let added: Vec<f64> = (0..seen.len()).map(|row| up(seen[row] + beyond.at(row, 0))).collect();
         let sizes = directions.bounds(of_box);
         let (kept, added_to) = (sizes.times(&radii), sizes.times(&added));
-        let gains = kept.iter().zip(&added_to).map(|(kept, added)| 1.0 + added / (kept + ROUNDING));
+        let gains = kept.iter().zip(&added_to).map(|(kept, added)| 1.0 + added / (kept + TUNING.no_growth));
         let gain = gains.fold(1.0, f64::max);
         let radii = radii.iter().zip(&added).map(|(radius, added)| up(radius + added)).collect();
         Some(Self { directions, inverse, radii, gain })

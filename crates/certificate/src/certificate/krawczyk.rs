@@ -3,13 +3,8 @@
 use symdiff::taylor_model::up;
 
 use super::matrix::Bounds;
+use super::tuning::TUNING;
 use crate::numerics::larger;
-
-/// Most attempts to find a box that is mapped into itself.
-const ATTEMPTS: usize = 12;
-
-/// Factor by which the next box is larger than the image of the last one.
-const INFLATION: f64 = 1.25;
 
 /// The operator for a box of corrections |y| ≤ g: a bound of |C times the residual|, and one of |I − C J| with the
 /// derivatives J over the solutions in the box, row by row.
@@ -24,7 +19,7 @@ pub struct Image {
 /// where the search begins.
 pub fn enclose(first: Vec<f64>, mut image: impl FnMut(&[f64]) -> Image) -> Option<Vec<f64>> {
     let mut box_of = first;
-    for _ in 0..ATTEMPTS {
+    for _ in 0..TUNING.attempts_of_krawczyk {
         let Image { missed, contraction } = image(&box_of);
         let norm = contraction.rows().map(|row| up(row.iter().sum())).fold(0.0, larger);
         let apply = |y: &[f64]| -> Vec<f64> {
@@ -39,7 +34,10 @@ pub fn enclose(first: Vec<f64>, mut image: impl FnMut(&[f64]) -> Image) -> Optio
         if mapped.iter().any(|y| !y.is_finite()) {
             return None;
         }
-        let wider = mapped.iter().zip(&box_of).map(|(&mapped, &y)| up(INFLATION * larger(mapped, y.min(mapped))));
+        let wider = mapped
+            .iter()
+            .zip(&box_of)
+            .map(|(&mapped, &y)| up(TUNING.inflation_of_krawczyk * larger(mapped, y.min(mapped))));
         box_of = wider.collect();
     }
     None

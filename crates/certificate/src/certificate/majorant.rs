@@ -3,15 +3,7 @@
 use symdiff::taylor_model::up;
 
 use super::matrix::Bounds;
-
-/// Most attempts.
-const ATTEMPTS: usize = 100;
-
-/// Factor by which the next candidate is larger than the image of the last one.
-const INFLATION: f64 = 1.05;
-
-/// Added to candidates, so that zeros stay above their rounded images.
-const LEAST: f64 = 1e-280;
+use super::tuning::TUNING;
 
 /// An s with start + time (A s + rate) ≤ s, or `None` where none is found.
 ///
@@ -23,7 +15,7 @@ pub fn bound(matrix: &Bounds, start: &[f64], time: f64, rate: &[f64]) -> Option<
         rows.map(|((moved, start), rate)| up(start + up(time * up(moved + rate)))).collect()
     };
     let mut candidate = start.to_vec();
-    for _ in 0..ATTEMPTS {
+    for _ in 0..TUNING.attempts_of_majorant {
         let found = image(&candidate);
         // Written so that NaN is no proof.
         if found.iter().zip(&candidate).all(|(found, candidate)| found <= candidate) {
@@ -32,7 +24,7 @@ pub fn bound(matrix: &Bounds, start: &[f64], time: f64, rate: &[f64]) -> Option<
         if found.iter().any(|value| !value.is_finite()) {
             return None;
         }
-        candidate = found.iter().map(|value| INFLATION * value + LEAST).collect();
+        candidate = found.iter().map(|value| TUNING.inflation_of_majorant * value + TUNING.least_candidate).collect();
     }
     None
 }

@@ -5,13 +5,8 @@ use std::ops::Range;
 use nalgebra::DMatrix;
 use symdiff::taylor_model::{ModelSpace, Norms};
 
+use super::tuning::TUNING;
 use crate::numerics::larger;
-
-/// Largest ‖I − C J‖ that is left when an inverse is refined: its square is below rounding.
-const REFINED: f64 = 1e-9;
-
-/// Refinements before an inverse is given up; each squares ‖I − C J‖.
-const MAX_REFINEMENTS: usize = 8;
 
 /// A matrix whose entries are functions of ξ, enclosed.
 #[derive(Clone, Debug)]
@@ -208,10 +203,10 @@ impl Models {
     /// Makes `self` a better inverse of a matrix: C ← C + (I − C J) C (Schulz). Returns whether it is an inverse.
     pub fn refine_inverse_of(&mut self, space: &ModelSpace, matrix: &Self) -> bool {
         let mut last = f64::INFINITY;
-        for _ in 0..MAX_REFINEMENTS {
+        for _ in 0..TUNING.max_refinements {
             let rest = self.approximate_times(space, matrix).off_identity(space);
             let norm = rest.row_norm(space);
-            if norm <= REFINED || norm >= last {
+            if norm <= TUNING.refined_inverse || norm >= last {
                 break;
             }
             last = norm;

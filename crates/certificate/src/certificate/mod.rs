@@ -16,6 +16,7 @@ pub mod majorant;
 pub mod matrix;
 pub mod spaces;
 mod text;
+pub mod tuning;
 
 use std::sync::Arc;
 

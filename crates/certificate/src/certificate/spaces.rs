@@ -7,12 +7,10 @@ use symdiff::Interval;
 use symdiff::taylor_model::{ModelSpace, up};
 
 use super::matrix::Models;
+use super::tuning::TUNING;
 
 /// Half a unit in the last place, rounded up.
 const HALF_UNIT: f64 = 0.51 * f64::EPSILON;
-
-/// Parts of half a cell in which ranges are found term by term.
-const PARTS: i32 = 32;
 
 /// Polynomials of (τ, ξ) next to those of ξ, of the same order. Signs are ranges: an enclosure of a motion refuses
 /// signs of it that are not known.
@@ -80,7 +78,7 @@ impl Space {
         let of_parameters = of_parameters.collect();
         let part = |part: i32| {
             // No part has zero inside: powers are monotone there.
-            let ends = [part, part + 1].map(|end| Interval::point(f64::from(end) / f64::from(PARTS)));
+            let ends = [part, part + 1].map(|end| Interval::point(f64::from(end) / f64::from(TUNING.parts_of_cell)));
             let mut powers = [Interval::point(1.0); 2];
             let mut next = || {
                 let range = powers[0].hull(powers[1]);
@@ -89,7 +87,7 @@ impl Space {
             };
             (0..=order).map(|_| next()).collect()
         };
-        let of_time = (-PARTS..PARTS).map(part).collect();
+        let of_time = (-TUNING.parts_of_cell..TUNING.parts_of_cell).map(part).collect();
         Self { of_parameters, of_time, power, without_time, constant_in_time, raised, lowered, cell, box_of }
     }
 

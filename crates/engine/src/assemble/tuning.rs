@@ -1,6 +1,6 @@
 //! Constants of the room `assemble`.
 
-use crate::syntax::tuning::tuning;
+use symdiff::constants::tuning;
 
 tuning! {
     /// The equations of motion.

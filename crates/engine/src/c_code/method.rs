@@ -1,6 +1,7 @@
 //! How a model is integrated, and the parts of the runtime that this takes.
 
 use super::NoCode;
+use super::tuning::TUNING;
 use crate::compile::{Program, StartProgram, SwitchProgram};
 use crate::simulate::{Controller, Equilibrium, Integration, Needs, Simulator, Steps};
 
@@ -31,13 +32,10 @@ pub(super) struct Method<'c> {
     has_parameters: bool,
 }
 
-/// Most equations of a step whose singular configurations have a solve of their own: its matrices are on the stack.
-const MOST_SINGULAR: usize = 64;
-
 /// Whether a pivot can vanish, in equations that are few and have no values of links among them.
 fn may_be_singular(program: &Program) -> bool {
     let size = program.residual.len();
-    program.size == size && size <= MOST_SINGULAR && program.watched.iter().any(|own| !own.pivots.is_empty())
+    program.size == size && size <= TUNING.most_singular && program.watched.iter().any(|own| !own.pivots.is_empty())
 }
 
 impl<'c> Method<'c> {

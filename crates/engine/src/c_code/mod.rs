@@ -10,6 +10,7 @@ mod header;
 mod inputs;
 mod method;
 mod tables;
+pub mod tuning;
 
 use std::fmt::Write;
 
@@ -18,11 +19,9 @@ use symdiff::CWriter;
 use self::method::Method;
 use crate::numerics::Sample;
 use crate::simulate::{Integration, Observed, Schedule, SimulationError, Simulator, Steps, integrator};
+use tuning::TUNING;
 
 pub use fmi::FmiVersion;
-
-/// Most coordinates and multipliers of a mechanism whose equilibrium is found anew, by dense equations.
-const MOST_BALANCED: usize = 200;
 
 /// Terms of the files, on one line.
 const LICENCE: &str = "the model: its author's terms; the runtime, mbint's: MIT OR Apache-2.0";
@@ -126,7 +125,7 @@ pub fn c_code(simulator: &Simulator, steps: Steps, request: CodeRequest) -> Resu
     let outputs: Vec<(&str, &str)> =
         system.outputs.iter().map(|output| (output.name.as_str(), output.unit.as_str())).collect();
     let unknowns = system.q.len() + system.lambda.len();
-    let is_too_large = simulator.equilibrium.is_some() && unknowns > MOST_BALANCED;
+    let is_too_large = simulator.equilibrium.is_some() && unknowns > TUNING.most_balanced;
     let parameters = if is_too_large { &[][..] } else { &system.parameters[..] };
     let inputs = inputs::of(system, parameters, request.inputs)?;
     let method = Method::of(simulator, steps, parameters.len())?;

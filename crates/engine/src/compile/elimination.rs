@@ -11,7 +11,7 @@ use symdiff::{Expr, Graph, Guard, Input, SparseMatrix, Stages};
 
 use super::newton_matrix::ITERATION;
 use super::program::{Mode, Watched, WatchedPivot};
-use super::sparse_lu::{Factors, NoFactors, Numbers, PIVOT_SAMPLES, PivotRule, Pivoting, factorise};
+use super::sparse_lu::{Factors, NoFactors, Numbers, PivotRule, Pivoting, factorise};
 use crate::assemble::ConstraintId;
 use crate::compile::tuning::TUNING;
 
@@ -94,7 +94,7 @@ impl PivotChoice<'_> {
                 "a constraint's row ends before its own multiplier"
             );
             regular.rows[row].push((row, value));
-            numbers.insert(index + offset, [-weight; PIVOT_SAMPLES]);
+            numbers.insert(index + offset, [-weight; TUNING.pivot_samples]);
         }
         (regular, numbers)
     }

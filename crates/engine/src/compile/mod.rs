@@ -49,7 +49,7 @@ pub use nearest::OpenStart;
 pub use powers::{OF_EFFECT, OF_WHOLE, observing_powers};
 pub use program::{PivotSample, Program, Watched};
 pub use scheme::{Coefficients, Scheme};
-pub use sparse_lu::{NoFactors, PIVOT_SAMPLES};
+pub use sparse_lu::NoFactors;
 pub use start::{compile_nearest_start, compile_start};
 pub use start_equations::Residual;
 pub use start_program::{SampledValue, StartProgram};

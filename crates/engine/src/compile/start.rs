@@ -36,7 +36,7 @@ use super::equations::Equation;
 use super::layout::Layout;
 use super::links::{self, MassOfLinks};
 use super::nearest::{LeastSquares, OpenStart};
-use super::sparse_lu::{NoFactors, Numbers, PIVOT_SAMPLES, PivotRule, Pivoting, factorise};
+use super::sparse_lu::{NoFactors, Numbers, PivotRule, Pivoting, factorise};
 use super::start_equations::{ClosureOf, Equations, constraint_sizes, given_values, named, residuals};
 use super::start_factors::Factorised;
 use super::start_program::{JACOBIAN, OBSERVE, POSITION, SAMPLING, SampledValue, StartProgram, VELOCITY};
@@ -379,6 +379,6 @@ impl Builder<'_> {
 
     fn numbers(&self, matrix: &SparseMatrix) -> Vec<Numbers> {
         let entries: Vec<Expr> = matrix.entries().map(|(_, _, value)| value).collect();
-        self.at_sample.values(&self.graph, &entries).into_iter().map(|value| [value; PIVOT_SAMPLES]).collect()
+        self.at_sample.values(&self.graph, &entries).into_iter().map(|value| [value; TUNING.pivot_samples]).collect()
     }
 }

@@ -12,7 +12,8 @@ use super::newton_matrix::{ITERATION, NewtonSystem, STEP_SIZE, newton_system};
 use super::program::{FACTOR, MATRIX, OBSERVE, PivotSample, Program};
 use super::rounding::running_errors;
 use super::scheme::{ConstraintLevel, Scheme};
-use super::sparse_lu::{NoFactors, Numbers, PIVOT_SAMPLES, Pivoting};
+use super::sparse_lu::{NoFactors, Numbers, Pivoting};
+use super::tuning::TUNING;
 use crate::assemble::{ConstraintId, System};
 
 /// A value to compute, and the register that it must have, if any.
@@ -26,7 +27,7 @@ pub fn compile(
     system: &System,
     scheme: Scheme,
     redundant: &[ConstraintId],
-    samples: &[PivotSample; PIVOT_SAMPLES],
+    samples: &[PivotSample; TUNING.pivot_samples],
 ) -> Result<Program, NoFactors<Equation>> {
     let compiled = |by_links| compile_as(system, scheme, redundant, samples, by_links);
     match links::elimination(system, !redundant.is_empty()) {
@@ -46,7 +47,7 @@ fn compile_as(
     system: &System,
     scheme: Scheme,
     redundant: &[ConstraintId],
-    samples: &[PivotSample; PIVOT_SAMPLES],
+    samples: &[PivotSample; TUNING.pivot_samples],
     by_links: bool,
 ) -> Result<Program, NoFactors<Equation>> {
     let layout = Layout::of(system);
@@ -113,7 +114,7 @@ fn factors(
     newton: &NewtonSystem,
     inputs: &[Input],
     redundant: &[ConstraintId],
-    samples: &[PivotSample; PIVOT_SAMPLES],
+    samples: &[PivotSample; TUNING.pivot_samples],
 ) -> Result<(Version, Option<(Expr, Version)>), NoFactors> {
     let n = system.q.len();
     let numbers = sample_numbers(graph, &newton.matrix, inputs, samples);
@@ -218,7 +219,7 @@ fn sample_numbers(
     graph: &Graph,
     matrix: &SparseMatrix,
     inputs: &[Input],
-    samples: &[PivotSample; PIVOT_SAMPLES],
+    samples: &[PivotSample; TUNING.pivot_samples],
 ) -> Vec<Numbers> {
     let register_of = registers(inputs);
     let entries: Vec<Expr> = matrix.entries().map(|(_, _, value)| value).collect();
@@ -241,7 +242,11 @@ fn registers(inputs: &[Input]) -> FxHashMap<Expr, usize> {
 }
 
 /// What rounding makes of each constraint, the largest of the pivot samples.
-fn rounding_of_constraints(system: &System, inputs: &[Input], samples: &[PivotSample; PIVOT_SAMPLES]) -> Vec<f64> {
+fn rounding_of_constraints(
+    system: &System,
+    inputs: &[Input],
+    samples: &[PivotSample; TUNING.pivot_samples],
+) -> Vec<f64> {
     let register_of = registers(inputs);
     let mut largest = vec![0.0_f64; system.constraint.len()];
     for sample in samples {

@@ -1,6 +1,6 @@
 //! Constants of the room `compile`.
 
-use crate::syntax::tuning::tuning;
+use symdiff::constants::tuning;
 
 tuning! {
     /// Programs of a step.
@@ -46,5 +46,7 @@ tuning! {
         wider: usize = 8, moves "order of pivots, and so the last digits";
         /// Rows beyond which a diagonal order is not searched for in all of them.
         rows_searched: usize = 500, moves "order of pivots, and so the last digits";
+        /// Number of states whose numbers guide the choice of pivots.
+        pivot_samples: usize = 4, moves "the order of elimination";
     }
 }

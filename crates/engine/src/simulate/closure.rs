@@ -9,15 +9,9 @@ use symdiff::{Tile, WIDTHS};
 use super::error::{SimulationError, no_factors};
 use super::simulator::Simulator;
 use super::start::{Assembly, allowed_residual, free_columns};
+use super::tuning::TUNING;
 use crate::assemble::{CoordinateId, System};
 use crate::compile::{StartProgram, Tapes, compile_start};
-
-/// Weight of an angle as dependent coordinate against a position. Angles are preferred as independent: they grow
-/// without bound, so that they determine the configuration over whole turns.
-const ANGLES_STAY: f64 = 0.3;
-
-/// Most lanes evaluated at once.
-const WIDTH: usize = 32;
 
 /// The closure of a mechanism over one choice of independent coordinates.
 #[derive(Clone, Debug)]
@@ -77,7 +71,7 @@ pub fn choose_independent(simulator: &Simulator, parameters: &[f64], motion: &[f
         .system
         .coordinates
         .iter()
-        .map(|coordinate| if coordinate.is_angle { ANGLES_STAY } else { 1.0 })
+        .map(|coordinate| if coordinate.is_angle { TUNING.angles_stay } else { 1.0 })
         .collect();
     free_columns(&slopes, &weight).into_iter().map(CoordinateId::new).collect()
 }
@@ -152,7 +146,10 @@ impl<'s> Closure<'s> {
     /// Closes all points, some at once; gives each tile of them: number of its first, their count, and the assembly.
     fn each(&self, time: f64, points: &Points, mut visit: impl FnMut(usize, usize, &Assembly)) {
         let layout = &self.program.layout;
-        let width = WIDTHS.into_iter().find(|&width| width >= points.count.min(WIDTH)).unwrap_or(WIDTH);
+        let width = WIDTHS
+            .into_iter()
+            .find(|&width| width >= points.count.min(TUNING.closure_width))
+            .unwrap_or(TUNING.closure_width);
         let mut assembly = Assembly::new(&self.program, &self.simulator.system, width, |_, _| 0.0);
         let mut first = 0;
         while first < points.count {

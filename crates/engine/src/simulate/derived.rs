@@ -2,11 +2,9 @@
 
 use super::error::SimulationError;
 use super::modal::is_one_number;
+use super::tuning::TUNING;
 use crate::assemble::{NumberFormulas, System};
 use crate::model::Analysis;
-
-/// Results that a message lists at most.
-const LISTED: usize = 8;
 
 /// Outputs of results.
 #[derive(Clone, Debug)]
@@ -61,7 +59,7 @@ impl Derived {
 fn no_result(system: &System, name: &str) -> SimulationError {
     let further = system.outputs.iter().filter(|own| !own.is_derived()).map(|own| own.name.as_str());
     let all: Vec<String> = further.filter(|own| is_one_number(own)).map(|own| format!("`{own}`")).collect();
-    let more = if all.len() > LISTED { ", …" } else { "" };
-    let known = format!("{}{more}", all[..all.len().min(LISTED)].join(", "));
+    let more = if all.len() > TUNING.derived_listed { ", …" } else { "" };
+    let known = format!("{}{more}", all[..all.len().min(TUNING.derived_listed)].join(", "));
     SimulationError::NoResult { name: name.to_owned(), known }
 }

@@ -13,13 +13,8 @@ use symdiff::math;
 use super::control::Schedule;
 use super::simulator::Simulator;
 use super::step::Stepper;
+use super::tuning::TUNING;
 use crate::numerics::Sample;
-
-/// Points that f is extrapolated from.
-const POINTS: usize = 4;
-/// A jump is what differs from the extrapolated by so many times the largest difference of so many steps before.
-const JUMP: f64 = 10.0;
-const BEFORE: usize = 6;
 
 /// A mode that is watched.
 #[derive(Clone, Debug)]
@@ -115,17 +110,17 @@ impl Watch {
             return;
         }
         let force = state.acceleration + square * state.position;
-        if self.forces.len() == POINTS {
+        if self.forces.len() == TUNING.jump_points {
             let difference = force - self.extrapolated(time);
             let expected = self.differences.iter().fold(0.0_f64, |most, difference| most.max(difference.abs()));
-            if self.differences.len() == BEFORE && difference.abs() > JUMP * expected {
+            if self.differences.len() == TUNING.jump_steps && difference.abs() > TUNING.jump_factor * expected {
                 self.found.push(Excitation { time, amplitude: difference.abs() / square });
                 // The next value is compared with the one before, with the jump.
                 self.forces.iter_mut().for_each(|(_, force)| *force += difference);
             } else {
                 self.differences.push_back(difference);
             }
-            if self.differences.len() > BEFORE {
+            if self.differences.len() > TUNING.jump_steps {
                 self.differences.pop_front();
             }
             self.forces.pop_front();

@@ -1,9 +1,7 @@
 //! The question whether a run is to end before its last row.
 
+use super::tuning::TUNING;
 use std::fmt;
-
-/// Steps of a tile between two questions: a question takes some nanoseconds, a step of a large mechanism a millisecond.
-const BETWEEN: usize = 8;
 
 /// Asks whether to end. The answer never goes back to no.
 #[derive(Clone, Copy)]
@@ -22,7 +20,7 @@ impl<'a> Interruption<'a> {
 
     /// Whether to end; asked once in a few steps, of which `step` is the number.
     pub(super) fn is_asked_in(self, step: usize) -> bool {
-        step.is_multiple_of(BETWEEN) && self.is_asked()
+        step.is_multiple_of(TUNING.steps_between_questions) && self.is_asked()
     }
 }
 

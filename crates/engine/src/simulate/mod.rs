@@ -47,6 +47,7 @@ mod start;
 mod statics;
 mod step;
 mod time_functions;
+mod tuning;
 mod unmet_switch;
 mod visit;
 
@@ -70,5 +71,6 @@ pub(crate) use start::allowed_residual;
 pub(crate) use statics::Equilibrium;
 pub use step::{Counters, Stepper};
 pub use time_functions::TimeFunctions;
+pub use tuning::tuning;
 pub use unmet_switch::{SwitchSearch, switched_from, unmet_switch};
 pub use visit::{Visit, reduced_rows};

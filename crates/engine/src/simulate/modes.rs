@@ -11,19 +11,8 @@ use super::control::Schedule;
 use super::excitations::{Excitation, Watched, excitations};
 use super::fast_states::{StateMode, of_states};
 use super::simulator::Simulator;
+use super::tuning::TUNING;
 use crate::compile::{Coefficients, equations_of_motion};
-
-/// Largest mechanism whose modes are looked at, in coordinates.
-const MOST_COORDINATES: usize = 400;
-
-/// Most modes that are followed over the whole motion: the fastest.
-const MOST_WATCHED: usize = 40;
-
-/// Modes are looked at whose frequency is above this over the step.
-const SLOWEST: f64 = 0.2;
-
-/// Eigenvalues of Φ_qᵀ Φ_q below this share of the largest belong to motions that the constraints allow.
-const ALLOWED: f64 = 1e-12;
 
 /// A mode that the start or something later excites.
 #[derive(Clone, Debug, PartialEq)]
@@ -59,15 +48,15 @@ impl ExcitedMode {
 /// excites them.
 pub fn excited_modes(simulator: &Simulator, schedule: &Schedule) -> Vec<ExcitedMode> {
     let n = simulator.system.q.len();
-    if n > MOST_COORDINATES {
+    if n > TUNING.most_coordinates {
         return Vec::new();
     }
     let linear = Linearised::at_start(simulator);
     let (mut modes, watched): (Vec<ExcitedMode>, Vec<Watched>) =
         linear.modes(simulator, schedule.longest_step()).into_iter().unzip();
-    let slower = modes.len().saturating_sub(MOST_WATCHED);
+    let slower = modes.len().saturating_sub(TUNING.most_watched);
     if !watched.is_empty() {
-        let later = excitations(simulator, schedule, &watched[slower..], SLOWEST);
+        let later = excitations(simulator, schedule, &watched[slower..], TUNING.slowest_watched);
         modes[slower..].iter_mut().zip(later).for_each(|(mode, later)| mode.excitations.extend(later));
     }
     modes
@@ -171,7 +160,7 @@ impl Linearised {
             };
             (excited, Watched { weighted: vec![0.0; self.mass.nrows()], frequency })
         };
-        found.into_iter().filter(|mode| size(mode.value) * h > SLOWEST).map(of_mode).collect()
+        found.into_iter().filter(|mode| size(mode.value) * h > TUNING.slowest_watched).map(of_mode).collect()
     }
 
     /// `None` where M is not positive on the motions that the constraints allow.
@@ -187,7 +176,7 @@ impl Linearised {
         }
         // No eigenvalue is larger than the largest sum of a row.
         let largest = scaled.row_iter().map(|row| row.iter().map(|value| value.abs()).sum()).fold(0.0, f64::max);
-        if largest.sqrt() * h <= SLOWEST {
+        if largest.sqrt() * h <= TUNING.slowest_watched {
             return Some(Vec::new());
         }
         let eigen = SymmetricEigen::new(scaled);
@@ -198,7 +187,7 @@ impl Linearised {
             (reactions_matter && self.constraint.nrows() > 0).then(|| self.constraint.transpose().svd(true, true));
         let mut modes = Vec::new();
         for (index, &square) in eigen.eigenvalues.iter().enumerate() {
-            if square.sqrt() * h > SLOWEST {
+            if square.sqrt() * h > TUNING.slowest_watched {
                 let shape = shapes.column(index).into_owned();
                 let coefficients = simulator.program.coefficients;
                 modes.push(self.mode(&shape, square.sqrt(), h, coefficients, constraints.as_ref()));
@@ -253,7 +242,7 @@ impl Linearised {
         let eigen = SymmetricEigen::new(normal);
         let largest = eigen.eigenvalues.max();
         let columns: Vec<DVector<f64>> = (0..n)
-            .filter(|&index| eigen.eigenvalues[index] <= ALLOWED * largest)
+            .filter(|&index| eigen.eigenvalues[index] <= TUNING.allowed_motion * largest)
             .map(|index| eigen.eigenvectors.column(index).into_owned())
             .collect();
         (!columns.is_empty()).then(|| DMatrix::from_columns(&columns))

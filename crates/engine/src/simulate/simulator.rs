@@ -17,6 +17,7 @@ use super::start::{
     shared_coordinates,
 };
 use super::statics::Equilibrium;
+use super::tuning::TUNING;
 use crate::assemble::{EquationId, OutputId, System};
 use crate::compile::{
     Equation, Layout, Program, Scheme, StartProgram, SwitchProgram, compile, compile_nearest_start, compile_overlaps,
@@ -24,12 +25,6 @@ use crate::compile::{
 };
 use crate::model::Analysis;
 use crate::numerics::Sample;
-
-/// Samples that are assembled together where nothing else is asked.
-const ASSEMBLED_AT_ONCE: usize = 8;
-
-/// Steps from the nominal parameters to those of a sample that is far from them.
-const CONTINUATION_STEPS: usize = 16;
 
 /// A mechanism that is assembled at its nominal parameters.
 #[derive(Clone, Debug)]
@@ -287,7 +282,7 @@ impl Simulator {
             }
             can
         };
-        samples.chunks(ASSEMBLED_AT_ONCE).flat_map(of_tile).collect()
+        samples.chunks(TUNING.assembled_at_once).flat_map(of_tile).collect()
     }
 
     /// The state of a sample's equilibrium, at rest.
@@ -335,8 +330,8 @@ impl Simulator {
         if far.contains(&true) {
             let mut continued = Assembly::new(&self.start, &self.system, samples.len(), at(0.0));
             continued.set_state(&self.nominal);
-            for step in 1..CONTINUATION_STEPS {
-                continued.follow(at(step as f64 / CONTINUATION_STEPS as f64));
+            for step in 1..TUNING.continuation_steps {
+                continued.follow(at(step as f64 / TUNING.continuation_steps as f64));
             }
             continued.set_parameters(at(1.0));
             let open_now = continued.assemble();

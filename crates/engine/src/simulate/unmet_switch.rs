@@ -17,47 +17,12 @@ use super::integrator::Integrator;
 use super::interruption::Interruption;
 use super::simulator::Simulator;
 use super::step::Counters;
+use super::tuning::TUNING;
 use crate::compile::{SwitchProgram, Tapes};
 use crate::numerics::{Extent, ParameterBox, SparseWork, Surrogate, SurrogateWork, extremes, spread};
 
-/// Degree of the motions' polynomials by the number of parameters.
-const DEGREES: [usize; 3] = [12, 6, 4];
-
-/// Samples for each parameter, where these are more.
-const SPREAD: usize = 24;
-
-/// Intervals of the first look over the box, by the number of parameters, and over the time between two rows.
-const INTERVALS: [usize; 3] = [32, 10, 6];
-const INTERVALS_OF_TIME: usize = 4;
-
-/// A switch is looked at more closely where its least distance from zero is less than this share of its range.
-const NEAR: f64 = 0.25;
-
-/// Values of a switch below this share of its largest value are zero.
-const ZERO: f64 = 1e-9;
-
-/// The same sign at another sample no further away than so many rows, or this share of all, is the same event.
-const ROWS: usize = 2;
-const SHARE_OF_ROWS: usize = 20;
-
-/// Most places that are simulated, for each sign of each switch: the first ones, and those that go furthest.
-const MOST_FIRST: usize = 6;
-const MOST_FURTHEST: usize = 6;
-
-/// Points evaluated at once.
-const WIDTH: usize = 32;
-/// Rows simulated at once.
-const BLOCK: usize = 64;
-
 /// How far a switch went below and above zero since the row before.
 type Depths = [f64; 2];
-
-/// Largest ratio of penetration depths for which a validation sample counts as evidence: one that only grazes a post
-/// says little of those that hit it.
-const AS_DEEP: f64 = 2.0;
-
-/// A sign that samples have by less than this share of the other is looked for further on.
-const SHALLOW: f64 = 0.1;
 
 /// A place where a switch may have a sign that no sample's has.
 #[derive(Clone, Debug)]
@@ -98,8 +63,11 @@ pub fn unmet_switch(
 ) -> Result<Option<SwitchSearch>, SimulationError> {
     let k = domain.dimension();
     let Some(program) = simulator.switches().filter(|_| k > 0) else { return Ok(None) };
-    let surrogate = DEGREES.get(k - 1).map(|&degree| Surrogate::tensor(&vec![degree; k], &vec![degree + 1; k]));
-    let others = surrogate.as_ref().map_or_else(|| spread(k, SPREAD * k), |surrogate| surrogate.samples().to_vec());
+    let surrogate =
+        TUNING.switch_degrees.get(k - 1).map(|&degree| Surrogate::tensor(&vec![degree; k], &vec![degree + 1; k]));
+    let others = surrogate
+        .as_ref()
+        .map_or_else(|| spread(k, TUNING.switch_samples * k), |surrogate| surrogate.samples().to_vec());
     let nodes = others.len();
     let points = [&others, held_out].concat();
     let observing = Observing { simulator, program, domain, steps, interruption };
@@ -116,12 +84,12 @@ pub fn unmet_switch(
             suspects.extend(between.suspects(row, times, [&before, &coefficients], &one_sided(program, met)));
         }
     })?;
-    let reach = ROWS.max(depths.len() / SHARE_OF_ROWS);
+    let reach = TUNING.switch_rows.max(depths.len() / TUNING.switch_share_of_rows);
     let is_met = |row: usize, switch: usize, side: usize, depth: f64| {
         let rows = row.saturating_sub(reach)..(row + reach + 1).min(depths.len());
         depths[rows]
             .iter()
-            .any(|[_, held_out]| held_out[switch][side] > 0.0 && AS_DEEP * held_out[switch][side] >= depth)
+            .any(|[_, held_out]| held_out[switch][side] > 0.0 && TUNING.as_deep * held_out[switch][side] >= depth)
     };
     let first_unmet = |of_samples: &[[Vec<Depths>; 2]]| {
         let unmet = |row: usize, depths: &[Depths]| {
@@ -169,7 +137,7 @@ pub fn switched_from(
 fn one_sided(program: &SwitchProgram, met: &[Depths]) -> Vec<(usize, usize)> {
     let other = |(switch, met): (usize, &Depths)| {
         let side = usize::from(met[0] > met[1]);
-        let is_one_sided = met[side] < SHALLOW * met[1 - side];
+        let is_one_sided = met[side] < TUNING.shallow_switch * met[1 - side];
         (program.switches[switch].rate.is_some() && is_one_sided).then_some((switch, side))
     };
     met.iter().enumerate().filter_map(other).collect()
@@ -181,9 +149,9 @@ fn chosen(suspects: Vec<Suspect>, switches: usize) -> Vec<Vec<f64>> {
     for (switch, side) in (0..switches).flat_map(|switch| [(switch, 0), (switch, 1)]) {
         let mut own: Vec<&Suspect> =
             suspects.iter().filter(|suspect| (suspect.switch, suspect.side) == (switch, side)).collect();
-        let mut places: Vec<&Vec<f64>> = own.iter().take(MOST_FIRST).map(|suspect| &suspect.xi).collect();
+        let mut places: Vec<&Vec<f64>> = own.iter().take(TUNING.most_first).map(|suspect| &suspect.xi).collect();
         own.sort_by(|a, b| b.beyond.total_cmp(&a.beyond).then(a.row.cmp(&b.row)));
-        places.extend(own.iter().take(MOST_FURTHEST).map(|suspect| &suspect.xi));
+        places.extend(own.iter().take(TUNING.most_furthest).map(|suspect| &suspect.xi));
         places.into_iter().for_each(|xi| {
             if !chosen.contains(xi) {
                 chosen.push(xi.clone());
@@ -228,8 +196,8 @@ impl Observing<'_> {
         let mut sizes = vec![0.0_f64; switches];
         let (mut all, mut values): (Vec<[Vec<Depths>; 2]>, Vec<f64>) = (Vec::new(), Vec::new());
         let mut switched_from = None;
-        for first in (0..self.steps.schedule.rows).step_by(BLOCK) {
-            let rows = first..(first + BLOCK).min(self.steps.schedule.rows);
+        for first in (0..self.steps.schedule.rows).step_by(TUNING.switch_block) {
+            let rows = first..(first + TUNING.switch_block).min(self.steps.schedule.rows);
             let stops = run.advance(self.steps, rows.clone(), Observed::Switches, &mut values);
             if run.is_cut() {
                 break;
@@ -245,13 +213,14 @@ impl Observing<'_> {
                 let [mut before, mut after] = [Vec::new(), Vec::new()];
                 for (size, extents) in sizes.iter().zip(switches) {
                     let (low, high) = extents.split_at(samples.len());
-                    let has_switched =
-                        |(low, high): (&f64, &f64)| *low < -ZERO * size && *high > ZERO * size && high.is_finite();
+                    let has_switched = |(low, high): (&f64, &f64)| {
+                        *low < -TUNING.switch_zero * size && *high > TUNING.switch_zero * size && high.is_finite()
+                    };
                     if switched_from.is_none() && low.iter().zip(high).any(has_switched) {
                         switched_from = Some(row);
                     }
-                    before.push(depths(&low[..split], &high[..split], ZERO * size));
-                    after.push(depths(&low[split..], &high[split..], ZERO * size));
+                    before.push(depths(&low[..split], &high[..split], TUNING.switch_zero * size));
+                    after.push(depths(&low[split..], &high[split..], TUNING.switch_zero * size));
                 }
                 let deeper = |(a, b): (&Depths, &Depths)| [a[0].max(b[0]), a[1].max(b[1])];
                 look(row, motions, &before.iter().zip(&after).map(deeper).collect::<Vec<Depths>>());
@@ -294,8 +263,8 @@ impl Between<'_> {
     ) -> Vec<Suspect> {
         let k = self.domain.dimension();
         let switches: Vec<usize> = one_sided.iter().map(|&(switch, _)| switch).collect();
-        let mut intervals = vec![INTERVALS[k.min(INTERVALS.len()) - 1]; k];
-        intervals.push(INTERVALS_OF_TIME);
+        let mut intervals = vec![TUNING.switch_intervals[k.min(TUNING.switch_intervals.len()) - 1]; k];
+        intervals.push(TUNING.intervals_of_time);
         if switches.is_empty() {
             return Vec::new();
         }
@@ -304,19 +273,25 @@ impl Between<'_> {
         let near = |(index, line): (usize, &[f64])| {
             let (low, high) = line.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &v| (l.min(v), h.max(v)));
             let (distance, size) = if one_sided[index].1 == 0 { (low, high) } else { (-high, -low) };
-            (distance <= NEAR * (high - low) && size > 0.0).then_some((index, size))
+            (distance <= TUNING.switch_near * (high - low) && size > 0.0).then_some((index, size))
         };
         let near: Vec<(usize, f64)> = values.chunks_exact(lattice.len()).enumerate().filter_map(near).collect();
         if near.is_empty() {
             return Vec::new();
         }
         let closer: Vec<usize> = near.iter().map(|&(index, _)| switches[index]).collect();
-        let least: Vec<f64> = near.iter().map(|(_, size)| ZERO * size).collect();
+        let least: Vec<f64> = near.iter().map(|(_, size)| TUNING.switch_zero * size).collect();
         let found = extremes(&intervals, &least, |points| self.values(points, times, motions, &closer));
         let suspect = |(&(index, size), found): (&(usize, f64), &Extent)| {
             let (switch, side) = one_sided[index];
             let beyond = if side == 0 { -found.range.lower } else { found.range.upper };
-            (beyond > ZERO * size).then(|| Suspect { row, switch, side, beyond, xi: found.places[side][..k].to_vec() })
+            (beyond > TUNING.switch_zero * size).then(|| Suspect {
+                row,
+                switch,
+                side,
+                beyond,
+                xi: found.places[side][..k].to_vec(),
+            })
         };
         near.iter().zip(&found).filter_map(suspect).collect()
     }
@@ -330,12 +305,12 @@ impl Between<'_> {
             self.surrogate.basis().values(&xi, motion, at_row, &mut SparseWork::default());
         }
         let layout = &self.program.layout;
-        let mut tile = Tile::new(WIDTH, self.program.registers(), self.program.constants());
+        let mut tile = Tile::new(TUNING.switch_width, self.program.registers(), self.program.constants());
         let h = times[1] - times[0];
         let mut values = vec![0.0; switches.len() * points.len()];
-        for first in (0..points.len()).step_by(WIDTH) {
-            let count = WIDTH.min(points.len() - first);
-            for lane in 0..WIDTH {
+        for first in (0..points.len()).step_by(TUNING.switch_width) {
+            let count = TUNING.switch_width.min(points.len() - first);
+            for lane in 0..TUNING.switch_width {
                 let point = first + lane.min(count - 1);
                 let s = 0.5 * (1.0 + points[point][k]);
                 for (parameter, &xi) in points[point][..k].iter().enumerate() {

@@ -10,6 +10,7 @@ use super::figure::document::{document, finished, group, heading, metadata, shor
 use super::figure::legend::{Entry, ROW, Sign};
 use super::figure::panel::{Named, Panel};
 use super::figure::style::{Color, Hue};
+use super::tuning::TUNING;
 use crate::grammar::display_unit::ShownUnit;
 use crate::results::{Bounds, Contribution};
 
@@ -45,8 +46,6 @@ const LEFT: f64 = 74.0;
 const TOP: f64 = 36.0;
 const BOTTOM: f64 = 50.0;
 
-/// Most parameters that have a layer of their own.
-const MOST: usize = 6;
 /// The layer of what parameters have together.
 const TOGETHER: Color = Color([190, 190, 190]);
 /// The layer of all other parameters.
@@ -123,7 +122,7 @@ fn layers(contributions: &[Contribution], rows: usize) -> Vec<Layer> {
         let share = |row: usize| of.iter().map(|contribution| contribution.main[row]).sum();
         (0..rows).map(|row| if is_known(row) { share(row) } else { f64::NAN }).collect()
     };
-    let own = if ranked.len() > MOST + 1 { MOST } else { ranked.len() };
+    let own = if ranked.len() > TUNING.most_layers + 1 { TUNING.most_layers } else { ranked.len() };
     let mut layers = Vec::new();
     for (index, contribution) in ranked[..own].iter().enumerate() {
         let (group, label) = (format!("share-{index}"), contribution.parameter.clone());

@@ -14,6 +14,7 @@ use super::figure::panel::{Named, Panel, Style, label_width};
 use super::figure::style::Hue;
 use super::figure::view::{deviation, in_view};
 use super::limits::{Limit, near};
+use super::tuning::TUNING;
 use crate::grammar::display_unit::ShownUnit;
 use crate::results::Band;
 
@@ -27,9 +28,6 @@ const BOTTOM: f64 = 50.0;
 const BETWEEN: f64 = 22.0;
 /// Space on the right, px.
 const RIGHT: f64 = 20.0;
-
-/// Deviations that are smaller than this, relative to the output's size, are rounding noise.
-const ROUNDING: f64 = 1e-12;
 
 /// A nominal course with its bands.
 pub(super) struct BandedCourse<'a> {
@@ -132,7 +130,7 @@ impl<'a> Figure<'a> {
         let all_times = shown.courses.iter().flat_map(|course| course.times);
         let time = Axis::fit(all_times.copied(), shown.across.unit, 9, 0.0, 0.0);
         let value = Axis::fit(values.into_iter(), shown.unit, 6, 0.04, shown.noise);
-        let noise = shown.noise.max(ROUNDING * size);
+        let noise = shown.noise.max(TUNING.rounding_of_motion * size);
         let deviation = Axis::fit(below.into_iter(), shown.unit, 4, 0.06, noise);
         let left = 44.0 + label_width(&value).max(label_width(&deviation));
         let legend = Legend::new(entries, SIZE.0 - RIGHT - left);

@@ -4,11 +4,11 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
-use std::time::Duration;
 
 use super::error::ExportError;
 use super::owned::{OWNED, Owned, sha256};
 use super::replacing::{self, Replacement};
+use super::tuning::TUNING;
 
 /// Files that are written into a folder of their own within their destination, and replace older ones as one when all
 /// are written: neither a failure nor a killed run leaves a partial file; a full disk leaves older results unchanged;
@@ -25,9 +25,6 @@ pub(super) struct AtomicFiles<'d> {
     /// Not every system opens folders, and not every file system locks: then the files of two runs may mix.
     folder: Option<fs::File>,
 }
-
-/// Between two tries to lock a folder.
-const BETWEEN_TRIES: Duration = Duration::from_millis(100);
 
 /// How temporary files are called.
 const TEMPORARY: (&str, &str) = (".mbint-", ".tmp");
@@ -136,7 +133,7 @@ pub fn wait_for_folder(dir: &Path, waits: &mut dyn FnMut() -> bool) -> Result<()
         if !waits() {
             return Err(ExportError::Held { path: dir.to_owned() });
         }
-        std::thread::sleep(BETWEEN_TRIES);
+        std::thread::sleep(TUNING.between_tries);
     }
     Ok(())
 }

@@ -2,15 +2,15 @@
 
 use std::path::Path;
 
+use super::tuning::TUNING;
 use crate::elements::Form;
 use crate::grammar::Mesh;
 use crate::results::Drawing;
 use crate::syntax::mesh_file::{Triangle, triangles};
-use crate::syntax::regular;
-use crate::syntax::tuning::TUNING;
+use crate::syntax::{self, regular};
 
 /// Triangles of all meshes of a drawing; those beyond are left out.
-pub const MOST_TRIANGLES: usize = 12_000;
+pub const MOST_TRIANGLES: usize = TUNING.most_triangles;
 
 /// Reads meshes that have not been read, from files beside the model or in a folder there, and leaves out those that
 /// cannot be, and those that are too many.
@@ -40,6 +40,7 @@ fn read(file: &str, beside: &Path) -> Option<Vec<Triangle>> {
     let folder = beside.canonicalize().ok()?;
     // A link may lead out of the folder.
     let within = |path: &Path| beside.join(path).canonicalize().ok().filter(|full| full.starts_with(&folder));
-    let found = candidates.into_iter().find_map(|path| regular(&within(path)?, TUNING.mesh_bytes).ok())?;
+    let found =
+        candidates.into_iter().find_map(|path| regular(&within(path)?, syntax::tuning::TUNING.mesh_bytes).ok())?;
     triangles(&found).ok()
 }

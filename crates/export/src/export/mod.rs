@@ -39,6 +39,7 @@ mod stems;
 mod sweep;
 mod sweep_files;
 mod tornado;
+pub mod tuning;
 mod verification;
 mod witnesses;
 

@@ -8,6 +8,7 @@ use data_encoding::HEXLOWER;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
+use super::tuning::TUNING;
 use crate::syntax::text_file::regular;
 
 /// The summary's file.
@@ -27,9 +28,6 @@ pub(super) const OWNED: &str = ".mbint.json";
 
 /// Version of the results' files: greater when a key or a column goes or changes its meaning. New ones do not count.
 pub(super) const SCHEMA: u32 = 1;
-
-/// Largest file of results that is read, bytes.
-const LARGEST: u64 = 1 << 30;
 
 /// What runs have written into a folder, and the next one may remove.
 #[derive(Default, Serialize, Deserialize)]
@@ -78,7 +76,7 @@ pub(super) fn sha256(bytes: &[u8]) -> String {
 /// # Errors
 /// Where it cannot be read.
 pub(super) fn read(path: &Path) -> io::Result<Vec<u8>> {
-    regular(path, LARGEST)
+    regular(path, TUNING.largest_file)
 }
 
 /// Whether a name is of a file or folder in the folder itself.

@@ -6,13 +6,11 @@ use super::figure::panel::Style;
 use super::figure::style::{Color, Hue};
 use super::limits::limits;
 use super::rounded::rounded;
+use super::tuning::TUNING;
 use crate::grammar::display_unit::ShownUnit;
 use crate::methods::{About, Method};
 use crate::numerics::BandError;
 use crate::results::{Band, Bounds, OutputBounds, RequirementSummary, StatisticsResult, Uncertain};
-
-/// Motion that is smaller than this, relative to the largest output of the same unit, is rounding noise.
-const ROUNDING: f64 = 1e-12;
 
 fn style(method: Method) -> Style {
     let About { label, color, fill, dashes, .. } = *method.about();
@@ -107,7 +105,7 @@ pub(super) fn shown<'a>(output: &'a OutputBounds, noise: f64, courses: &'a [Band
 pub fn noise(bounds: &Bounds, output: &OutputBounds) -> f64 {
     let same = bounds.outputs.iter().filter(|other| other.unit == output.unit);
     let sizes = same.flat_map(|output| &output.nominal).filter(|x| x.is_finite()).map(|x| x.abs());
-    ROUNDING * sizes.fold(0.0, f64::max)
+    TUNING.rounding_of_motion * sizes.fold(0.0, f64::max)
 }
 
 #[cfg(test)]

@@ -8,10 +8,8 @@ use tempfile::NamedTempFile;
 
 use super::csv::number;
 use super::error::ExportError;
+use super::tuning::TUNING;
 use crate::results::{SampleFormat, SampleTable};
-
-/// Samples whose parameters are made at a time.
-const AT_ONCE: usize = 4096;
 
 /// Gets values (sample, row, output) of consecutive samples.
 pub type Keep<'k> = dyn FnMut(&[f64]) -> Result<(), ExportError> + 'k;
@@ -81,8 +79,8 @@ fn npz<E: From<ExportError>>(
         return Ok(None);
     }
     array(&mut archive, "parameters", "<f8", &[table.count, parameters], failed, |into| {
-        for first in (0..table.count).step_by(AT_ONCE) {
-            let points = (table.points)(first..(first + AT_ONCE).min(table.count));
+        for first in (0..table.count).step_by(TUNING.samples_at_once) {
+            let points = (table.points)(first..(first + TUNING.samples_at_once).min(table.count));
             floats(into, points.iter().flatten().copied()).map_err(failed)?;
         }
         Ok::<(), E>(())

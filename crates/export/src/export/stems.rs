@@ -1,5 +1,6 @@
 //! Names of files.
 
+use super::tuning::TUNING;
 use std::collections::HashSet;
 
 /// `name` as a file name without extension that is valid on every system: letters, digits, `_`, `-` and `.` stay, the
@@ -7,12 +8,10 @@ use std::collections::HashSet;
 pub fn file_stem(name: &str) -> String {
     /// Names of devices on Windows, whatever their extension.
     const RESERVED: [&str; 6] = ["con", "prn", "aux", "nul", "com", "lpt"];
-    /// Bytes; file systems take 255, with the extension and a number.
-    const LONGEST: usize = 120;
 
     let keep = |c: char| if c.is_alphanumeric() || "_-.".contains(c) { c } else { '_' };
     let mut stem: String = name.chars().map(keep).collect();
-    while stem.len() > LONGEST {
+    while stem.len() > TUNING.longest_name {
         stem.pop();
     }
     // No hidden files, no `..`, and no trailing dot, which Windows drops.

@@ -8,10 +8,8 @@ use super::figure::panel::Panel;
 use super::figure::path::px;
 use super::figure::style::{Color, Hue};
 use super::rounded::{rounded, significant};
+use super::tuning::TUNING;
 use crate::grammar::display_unit::ShownUnit;
-
-/// Most bars of a plot; parameters of less influence are left out.
-const MOST: usize = 24;
 
 /// Width on the page, px, and heights of a bar and of what stands above and below all.
 const WIDTH: f64 = 760.0;
@@ -55,7 +53,7 @@ fn bracketed(unit: &str) -> String {
 
 /// The bars, the largest first, as an SVG document; `across` names their quantity and its unit.
 pub(super) fn tornado(prefix: &str, title: &str, across: (&str, ShownUnit), bars: &[Bar]) -> String {
-    let bars = &bars[..bars.len().min(MOST)];
+    let bars = &bars[..bars.len().min(TUNING.most_bars)];
     let most = bars.iter().fold(0.0_f64, |most, bar| most.max(bar.influence.abs()));
     let x = Axis::fit([-most, most].into_iter(), across.1, 7, 0.04, 0.0);
     let y = Axis::fit([0.0, 1.0].into_iter(), "", 2, 0.0, 0.0);

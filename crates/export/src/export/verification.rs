@@ -5,10 +5,8 @@ use std::path::Path;
 use super::error::ExportError;
 use super::report::{Section, plain_page};
 use super::rounded::{rounded, significant};
+use super::tuning::TUNING;
 use crate::results::{FormulationVerification, PowerBalance, Verification};
-
-/// Digits of numbers on the page.
-const DIGITS: usize = 4;
 
 /// Writes the page.
 ///
@@ -28,7 +26,7 @@ fn page(found: &Verification) -> String {
 }
 
 fn number(value: f64) -> String {
-    rounded(significant(value, DIGITS))
+    rounded(significant(value, TUNING.digits_of_verification))
 }
 
 fn headings<const N: usize>(names: [&str; N]) -> Vec<String> {

@@ -1,5 +1,6 @@
 //! Which tolerances of instances are one for all of them, for people.
 
+use super::tuning::TUNING;
 use super::words::count;
 use crate::results::AssemblySummary;
 
@@ -9,11 +10,9 @@ pub fn lines(assemblies: &[AssemblySummary]) -> String {
 }
 
 fn line(of: &AssemblySummary) -> String {
-    /// Names that are shown.
-    const MOST: usize = 8;
     let names = |names: &[String]| {
-        let shown = names.iter().take(MOST).map(String::as_str).collect::<Vec<_>>().join(", ");
-        let more = names.len().saturating_sub(MOST);
+        let shown = names.iter().take(TUNING.named_assemblies).map(String::as_str).collect::<Vec<_>>().join(", ");
+        let more = names.len().saturating_sub(TUNING.named_assemblies);
         if more > 0 { format!("{shown} and {more} more") } else { shown }
     };
     let instances = count(of.instances.len(), "instance", "instances");

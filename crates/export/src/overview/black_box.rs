@@ -1,5 +1,6 @@
 //! A program that answered instead of a mechanism, for people.
 
+use super::tuning::TUNING;
 use super::words::count;
 use crate::grammar::display_unit::ShownUnit;
 use crate::results::{BlackBoxSummary, ErrorSummary, NoiseSummary};
@@ -9,9 +10,6 @@ use crate::syntax::harmless;
 pub fn heading(own: &BlackBoxSummary) -> String {
     format!("a black box, `{}`", harmless(&own.command.join(" ")))
 }
-
-/// Share of a band's width that held-out answers of a smooth response do not miss a surrogate by.
-const ABRUPT: f64 = 0.1;
 
 /// How far a program's answers are to be trusted; `errors` are those of all bands.
 pub fn lines(own: &BlackBoxSummary, errors: &[ErrorSummary]) -> String {
@@ -27,7 +25,7 @@ pub fn lines(own: &BlackBoxSummary, errors: &[ErrorSummary]) -> String {
         noise if noise.is_empty() => "the same answers".to_owned(),
         noise => format!("noise of {}", noise.join(", ")),
     };
-    let abrupt = |error: &&ErrorSummary| error.width > 0.0 && error.surrogate > ABRUPT * error.width;
+    let abrupt = |error: &&ErrorSummary| error.width > 0.0 && error.surrogate > TUNING.abrupt * error.width;
     let jumps: String = errors.iter().filter(abrupt).map(|error| {
         let share = 100.0 * error.surrogate / error.width;
         format!(

@@ -1,15 +1,10 @@
 //! What excitations do as constants, and as any functions, for people; random ones.
 
+use super::tuning::TUNING;
 use super::words::digits;
 use crate::grammar::display_unit::ShownUnit;
 use crate::results::{ExcitationSummary, Summary};
 use crate::syntax::suggest;
-
-/// Lines that fit a screen.
-const MOST: usize = 12;
-
-/// Where functions move an output no further than this, constants are enough.
-const ENOUGH: f64 = 1.005;
 
 /// A line for each output that excitations move, and one of random ones.
 pub fn lines(summary: &Summary) -> String {
@@ -34,7 +29,7 @@ fn limited(excitations: &[ExcitationSummary]) -> String {
         let shown = |value: f64| format!("± {} {}", digits(unit.of_si(value)), unit.text).trim_end().to_owned();
         let ratio = own.as_function / own.as_constant;
         let told = match ratio {
-            ratio if ratio <= ENOUGH => ": constants are enough".to_owned(),
+            ratio if ratio <= TUNING.constants_are_enough => ": constants are enough".to_owned(),
             ratio if ratio.is_finite() => format!(": {} times as far", digits(ratio)),
             _ => String::new(),
         };
@@ -42,9 +37,9 @@ fn limited(excitations: &[ExcitationSummary]) -> String {
         format!("  {}: as a constant {constant}, as any function {function}{told}\n", own.output)
     };
     let moved = || excitations.iter().filter(|own| own.as_function > 0.0);
-    let mut text: String = moved().take(MOST).map(line).collect();
-    if moved().count() > MOST {
-        text += &format!("  … and {} more in summary.json\n", moved().count() - MOST);
+    let mut text: String = moved().take(TUNING.excitation_lines).map(line).collect();
+    if moved().count() > TUNING.excitation_lines {
+        text += &format!("  … and {} more in summary.json\n", moved().count() - TUNING.excitation_lines);
     }
     if text.is_empty() { text } else { text + "\n" }
 }

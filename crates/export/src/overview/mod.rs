@@ -8,6 +8,7 @@ mod run;
 mod stack;
 mod statistics;
 mod table;
+pub mod tuning;
 mod verdicts;
 mod warnings;
 mod words;

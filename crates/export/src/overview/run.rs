@@ -2,6 +2,7 @@
 
 use super::marks::BOLD;
 use super::table::{Align, Table};
+use super::tuning::TUNING;
 use super::words::{coordinates, count, digits};
 use super::{assemblies, black_box, excitations, statistics, verdicts};
 use crate::grammar::display_unit::ShownUnit;
@@ -10,8 +11,6 @@ use crate::simulate::is_one_number;
 
 /// The largest width and error of each band.
 fn errors(errors: &[ErrorSummary]) -> String {
-    /// Rows that fit a screen.
-    const MOST: usize = 24;
     let mut table = Table::new([
         ("bounds", Align::Left),
         ("largest width", Align::Right),
@@ -20,7 +19,7 @@ fn errors(errors: &[ErrorSummary]) -> String {
         ("of the steps", Align::Right),
         ("unit", Align::Left),
     ]);
-    for error in errors.iter().take(MOST) {
+    for error in errors.iter().take(TUNING.rows_of_errors) {
         let unit = ShownUnit::of(&error.display, &error.unit);
         let shown = |value: f64| format!("{:.2e}", unit.of_si(value));
         let number = |value: f64| if value.is_nan() { "unknown".to_owned() } else { shown(value) };
@@ -30,15 +29,15 @@ fn errors(errors: &[ErrorSummary]) -> String {
     }
     match errors.len() {
         0 => String::new(),
-        n if n > MOST => format!("{}  … and {} more in summary.json\n\n", table.render(2), n - MOST),
+        n if n > TUNING.rows_of_errors => {
+            format!("{}  … and {} more in summary.json\n\n", table.render(2), n - TUNING.rows_of_errors)
+        }
         _ => format!("{}\n", table.render(2)),
     }
 }
 
 /// What an analysis of one configuration found, and what an equilibrium is.
 fn analysis(analysis: &AnalysisSummary) -> String {
-    /// Rows that fit a screen.
-    const MOST: usize = 30;
     let number = |value: f64| if value.is_nan() { "unknown".to_owned() } else { format!("{value:.5e}") };
     let mut table = Table::new([
         ("output", Align::Left),
@@ -48,7 +47,7 @@ fn analysis(analysis: &AnalysisSummary) -> String {
         ("upper", Align::Right),
         ("error", Align::Right),
     ]);
-    for value in analysis.values.iter().take(MOST) {
+    for value in analysis.values.iter().take(TUNING.rows_of_analysis) {
         let unit = ShownUnit::of(&value.display, &value.unit);
         let number = |of: f64| number(unit.of_si(of));
         let bounds = value.bounds.first();
@@ -86,7 +85,6 @@ fn analysis(analysis: &AnalysisSummary) -> String {
 
 /// The three parameters that contribute most to each output.
 fn contributions(contributions: &[ContributionSummary]) -> String {
-    const MOST: usize = 3;
     let mut text = String::new();
     let varies = |contribution: &&ContributionSummary| contribution.total > 0.0;
     // Shapes are many: the file has them.
@@ -95,7 +93,8 @@ fn contributions(contributions: &[ContributionSummary]) -> String {
         let share = |contribution: &ContributionSummary| {
             format!("{} {:.0} %", contribution.parameter, 100.0 * contribution.total)
         };
-        let shares: Vec<String> = of_output.iter().filter(varies).take(MOST).map(share).collect();
+        let shares: Vec<String> =
+            of_output.iter().filter(varies).take(TUNING.parameters_that_matter).map(share).collect();
         // A single parameter has all of the variance.
         if of_output.len() > 1 && !shares.is_empty() {
             text += &format!("  tolerances that matter for {}: {}\n", of_output[0].output, shares.join(", "));
@@ -106,7 +105,6 @@ fn contributions(contributions: &[ContributionSummary]) -> String {
 
 /// A start that is a choice, singular configurations, and reactions that equilibrium does not determine.
 fn singular(summary: &Summary) -> String {
-    const MOST: usize = 4;
     let mut text = String::new();
     if !summary.shared_start.is_empty() {
         text += &format!(
@@ -116,8 +114,9 @@ fn singular(summary: &Summary) -> String {
     }
     let passes = &summary.singular_configurations;
     if !passes.is_empty() {
-        let times: Vec<String> = passes.iter().take(MOST).map(|pass| format!("{:.6}", pass.time)).collect();
-        let more = if passes.len() > MOST { ", …" } else { "" };
+        let times: Vec<String> =
+            passes.iter().take(TUNING.singular_configurations).map(|pass| format!("{:.6}", pass.time)).collect();
+        let more = if passes.len() > TUNING.singular_configurations { ", …" } else { "" };
         let passed = count(passes.len(), "singular configuration", "singular configurations");
         text += &format!(
             "  {passed}, at t = {}{more} s: {} depend on other constraints there\n",
@@ -125,7 +124,7 @@ fn singular(summary: &Summary) -> String {
             named(&passes[0].constraints)
         );
     }
-    for EventSummary { event, samples, met, grazed_at } in summary.events.iter().take(MOST) {
+    for EventSummary { event, samples, met, grazed_at } in summary.events.iter().take(TUNING.singular_configurations) {
         let at = |(name, value): &(String, f64)| {
             let own = summary.parameters.iter().find(|parameter| parameter.name == *name);
             own.map(|own| format!("{name} = {} {}", digits(*value), own.unit))
@@ -150,9 +149,12 @@ fn singular(summary: &Summary) -> String {
 
 /// The first names, and the number of the others.
 fn named(names: &[String]) -> String {
-    const MOST: usize = 6;
-    let more = if names.len() > MOST { format!(" and {} more", names.len() - MOST) } else { String::new() };
-    format!("{}{more}", names[..names.len().min(MOST)].join(", "))
+    let more = if names.len() > TUNING.names_in_line {
+        format!(" and {} more", names.len() - TUNING.names_in_line)
+    } else {
+        String::new()
+    };
+    format!("{}{more}", names[..names.len().min(TUNING.names_in_line)].join(", "))
 }
 
 /// The methods that ran, the bounds, and their reliability.

@@ -1,13 +1,11 @@
 //! Sensitivities of stacks of dimensions, for people.
 
 use super::table::{Align, Table};
+use super::tuning::TUNING;
 use super::words::short;
 use crate::export::shown_sensitivity;
 use crate::grammar::display_unit::ShownUnit;
 use crate::results::{OutputStatisticsSummary, Sensitivity, Summary};
-
-/// Most dimensions of an output that are printed.
-const MOST: usize = 30;
 
 /// Characters of the longest bar.
 const BAR: f64 = 24.0;
@@ -31,7 +29,7 @@ fn of_output(summary: &Summary, output: &OutputStatisticsSummary) -> String {
     let unit = ShownUnit::of(&output.display, &output.unit);
     let acting = || output.sensitivities.iter().filter(|own| own.share > 0.0);
     let most = acting().map(|own| own.deviation.abs()).fold(0.0, f64::max);
-    for own in acting().take(MOST) {
+    for own in acting().take(TUNING.stack_rows) {
         let Sensitivity { parameter, deviation, share, .. } = own;
         let (derivative, quotient) = shown_sensitivity(output, &summary.parameters, own);
         let bar = "#".repeat((BAR * deviation.abs() / most).ceil() as usize);
@@ -40,7 +38,7 @@ fn of_output(summary: &Summary, output: &OutputStatisticsSummary) -> String {
         table.row([parameter.clone(), derivative, quotient, deviation, unit, share, bar]);
     }
     let more = match acting().count() {
-        count if count > MOST => format!("  and {} of less influence\n", count - MOST),
+        count if count > TUNING.stack_rows => format!("  and {} of less influence\n", count - TUNING.stack_rows),
         _ => String::new(),
     };
     format!("\n  {} follows\n{}{more}\n", output.output, table.render(2))

@@ -1,5 +1,6 @@
 //! What to know before believing the results of a run.
 
+use super::tuning::TUNING;
 use super::words::{count, digits};
 use crate::export::rounded as rounded_number;
 use crate::grammar::display_unit::ShownUnit;
@@ -49,7 +50,6 @@ fn overlaps_at_start(found: &StartOverlap) -> Warning {
 
 /// Which bounds are unreliable, and from when.
 fn unreliable(summary: &Summary) -> Option<String> {
-    const MOST: usize = 4;
     let mut bands: Vec<(f64, String)> = summary
         .errors
         .iter()
@@ -57,11 +57,15 @@ fn unreliable(summary: &Summary) -> Option<String> {
         .collect();
     let total = bands.len();
     bands.sort_by(|a, b| a.0.total_cmp(&b.0));
-    bands.truncate(MOST);
+    bands.truncate(TUNING.unreliable_bounds);
     let (from, first) = bands.first()?;
     let others: String =
         bands[1..].iter().map(|(time, band)| format!(", of `{band}` from {} s", rounded(*time))).collect();
-    let more = if total > MOST { format!(", and {} more", total - MOST) } else { String::new() };
+    let more = if total > TUNING.unreliable_bounds {
+        format!(", and {} more", total - TUNING.unreliable_bounds)
+    } else {
+        String::new()
+    };
     let is_cause = |time: f64| time <= *from;
     let help = if summary.unmet_switch.is_some_and(is_cause) {
         "some values meet a contact, a stop or a kink that no sample meets: narrow the intervals until all values meet it or none does, \
@@ -159,11 +163,14 @@ fn is_resolved(own: &ReducedSummary) -> bool {
 
 /// Which reduced outputs and statistics are unreliable.
 fn unreliable_numbers(summary: &Summary) -> Option<String> {
-    const MOST: usize = 4;
     let names = unanswered(summary);
     let (first, others) = names.split_first()?;
-    let shown: String = others.iter().take(MOST - 1).map(|name| format!(", {name}")).collect();
-    let more = if names.len() > MOST { format!(", and {} more", names.len() - MOST) } else { String::new() };
+    let shown: String = others.iter().take(TUNING.unreliable_numbers - 1).map(|name| format!(", {name}")).collect();
+    let more = if names.len() > TUNING.unreliable_numbers {
+        format!(", and {} more", names.len() - TUNING.unreliable_numbers)
+    } else {
+        String::new()
+    };
     let verb = if names.len() == 1 && !first.starts_with("statistics") { "is" } else { "are" };
     Some(format!(
         "{first}{shown}{more} {verb} unreliable by every method: raise the order, shorten the step, or set `bounds: {{ tolerance: … }}`"

@@ -9,6 +9,7 @@ mod model_exchange;
 mod steps;
 mod task;
 #[cfg(any(unix, windows))]
+pub(crate) mod tuning;
 mod worker;
 
 pub use task::{Access, STEP, Task, Unpacked};

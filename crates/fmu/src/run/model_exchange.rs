@@ -5,6 +5,7 @@
 //! Source: Dormand, Prince, A family of embedded Runge-Kutta formulae, J. Comput. Appl. Math. 6 (1980) 19-26.
 
 use super::steps::Steps;
+use super::tuning::TUNING;
 use crate::native::{Discrete, Fault, Instance};
 
 /// Rows of the method, without its seventh stage, which only an error would need.
@@ -18,16 +19,6 @@ const STAGES: [&[f64]; 6] = [
 ];
 const NODES: [f64; 6] = [0.0, 0.2, 0.3, 0.8, 8.0 / 9.0, 1.0];
 const WEIGHTS: [f64; 6] = [35.0 / 384.0, 0.0, 500.0 / 1113.0, 125.0 / 192.0, -2187.0 / 6784.0, 11.0 / 84.0];
-
-/// Events of a motion, at most, and repetitions of one.
-const MOST_EVENTS: usize = 100_000;
-const MOST_REPETITIONS: usize = 1000;
-
-/// Halvings of a step in which an indicator changes its sign.
-const HALVINGS: usize = 48;
-
-/// Share of a step that is not worth a step of its own.
-const NOTHING: f64 = 1e-12;
 
 /// A motion of an instance, with its memory.
 struct Motion<'i> {
@@ -85,7 +76,7 @@ pub fn run(
 impl Motion<'_> {
     /// Moves on to a time, s, by one step, or by several where events are between; `whole` is the step's full length.
     fn go_to(&mut self, end: f64, whole: f64) -> Result<(), Fault> {
-        while end - self.time > NOTHING * whole {
+        while end - self.time > TUNING.no_step * whole {
             let is_event = self.next.is_some_and(|next| next <= end);
             let target = self.next.map_or(end, |next| next.min(end));
             if target - self.time > 0.0 {
@@ -93,7 +84,7 @@ impl Motion<'_> {
             }
             if self.changes(target)? {
                 let (from, mut before, mut after) = (self.time, 0.0, target - self.time);
-                for _ in 0..HALVINGS {
+                for _ in 0..TUNING.halvings_of_step {
                     let middle = 0.5 * (before + after);
                     self.step(middle)?;
                     *(if self.changes(from + middle)? { &mut after } else { &mut before }) = middle;
@@ -164,7 +155,7 @@ impl Motion<'_> {
     /// # Errors
     /// Where it does so before.
     fn ends(&self, found: Discrete) -> Result<bool, Fault> {
-        match found.terminates && self.end - self.time > NOTHING * self.end {
+        match found.terminates && self.end - self.time > TUNING.no_step * self.end {
             true => Err(Fault::Terminated(self.time)),
             false => Ok(found.terminates),
         }
@@ -173,8 +164,8 @@ impl Motion<'_> {
     /// Lets an event happen now.
     fn event(&mut self) -> Result<(), Fault> {
         self.events += 1;
-        if self.events > MOST_EVENTS {
-            return Err(Fault::Events { count: MOST_EVENTS, time: self.time });
+        if self.events > TUNING.most_events {
+            return Err(Fault::Events { count: TUNING.most_events, time: self.time });
         }
         self.instance.enter_events()?;
         self.happen()
@@ -194,8 +185,8 @@ impl Motion<'_> {
                 break;
             }
             repetitions += 1;
-            if repetitions > MOST_REPETITIONS {
-                return Err(Fault::Events { count: MOST_REPETITIONS, time: self.time });
+            if repetitions > TUNING.most_repetitions {
+                return Err(Fault::Events { count: TUNING.most_repetitions, time: self.time });
             }
         }
         self.instance.enter_continuous()?;

@@ -9,12 +9,7 @@ use rawzip::{CompressionMethod, RECOMMENDED_BUFFER_SIZE, ZipArchive};
 use sha2::{Digest, Sha256};
 
 use super::NotRead;
-
-/// Most bytes of an entry: an archive may say of a few bytes that they are very many.
-const MOST: u64 = 1 << 31;
-
-/// Most bytes of a description.
-const MOST_OF_DESCRIPTION: u64 = 1 << 28;
+use super::tuning::TUNING;
 
 /// The file of the description.
 const DESCRIPTION: &str = "modelDescription.xml";
@@ -43,7 +38,7 @@ pub(super) fn description(path: &Path) -> Result<String, NotRead> {
     each(path, |name, content| {
         if name == DESCRIPTION {
             let mut found = String::new();
-            content.take(MOST_OF_DESCRIPTION).read_to_string(&mut found)?;
+            content.take(TUNING.description_bytes).read_to_string(&mut found)?;
             text = Some(found);
         }
         Ok(())
@@ -62,7 +57,7 @@ pub fn unpack(path: &Path, folder: &Path) -> Result<(), NotRead> {
             fs::create_dir_all(parent)?;
         }
         let mut file = File::create(&target)?;
-        std::io::copy(&mut content.take(MOST), &mut file)?;
+        std::io::copy(&mut content.take(TUNING.entry_bytes), &mut file)?;
         Ok(())
     })
 }

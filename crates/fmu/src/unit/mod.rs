@@ -2,6 +2,7 @@
 
 mod archive;
 mod description;
+pub(crate) mod tuning;
 mod variable;
 
 pub use archive::{digest, unpack};

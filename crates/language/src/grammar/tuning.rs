@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use crate::syntax::tuning::tuning;
+use symdiff::constants::tuning;
 
 tuning! {
     /// Numbers and formulas.

@@ -23,4 +23,5 @@ pub mod yaml;
 pub use codes::{Code, Coded};
 pub use diagnostic::{Diagnostics, Record};
 pub use harmless::{harmless, is_harmful};
+pub use render::wrapped;
 pub use text_file::regular;

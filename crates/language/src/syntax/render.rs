@@ -144,8 +144,8 @@ impl Diagnostic {
     }
 }
 
-/// A text in lines of at most so many characters, broken at spaces.
-fn wrapped(text: &str) -> String {
+/// A text in lines of at most `TUNING.help_length` characters, broken at spaces.
+pub fn wrapped(text: &str) -> String {
     let mut wrapped = String::with_capacity(text.len());
     let mut width = 0;
     for word in text.split_inclusive(' ') {

@@ -13,14 +13,12 @@ use super::members::members;
 use super::proposal::Proposal;
 use super::schema::{KeyInfo, Schema};
 use super::text::Text;
+use super::tuning::TUNING;
 use super::values::Values;
 use super::workspace::Model;
 use crate::grammar::mentions::NameKind;
 use crate::grammar::reference;
 use crate::model::InstanceKind;
-
-/// Names of a kind that are proposed.
-const MOST_OF_A_KIND: usize = 100;
 
 /// Sections whose keys are names of coordinates.
 const OF_COORDINATES: [&str; 2] = ["initial", "guess"];
@@ -61,7 +59,7 @@ pub fn complete(
         }
     };
     // An editor asks again, with more letters, where names were left out.
-    let is_incomplete = model.is_some_and(|model| model.names_known.len() > MOST_OF_A_KIND);
+    let is_incomplete = model.is_some_and(|model| model.names_known.len() > TUNING.most_of_a_kind);
     CompletionList { is_incomplete, items: items.into_iter().enumerate().map(edited).collect() }
 }
 
@@ -258,7 +256,7 @@ fn names(model: Option<&Model>, path: &Path, at: &Context, kinds: &[NameKind]) -
     for (name, kind) in &model.names_known {
         let Some(order) = kinds.iter().position(|own| own == kind) else { continue };
         let Some(local) = name.strip_prefix(&prefix) else { continue };
-        if counts[order] == MOST_OF_A_KIND || !local.to_lowercase().contains(&typed) {
+        if counts[order] == TUNING.most_of_a_kind || !local.to_lowercase().contains(&typed) {
             continue;
         }
         let of_motion = matches!(kind, NameKind::Body | NameKind::Joint | NameKind::Effect | NameKind::Output);

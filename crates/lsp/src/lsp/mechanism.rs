@@ -5,14 +5,11 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread;
-use std::time::Duration;
 
+use super::tuning::TUNING;
 use crate::model::Description;
 use crate::study;
 use crate::syntax::{Code, Coded};
-
-/// How long an editor has been quiet when mechanisms are examined.
-const QUIET: Duration = Duration::from_millis(400);
 
 /// A model to be examined.
 pub struct Question {
@@ -50,7 +47,7 @@ pub fn examine(answer: impl Fn(Answer) + Send + 'static) -> Sender<Question> {
         while let Ok(first) = received.recv() {
             let mut latest = BTreeMap::from([(first.path.clone(), first)]);
             // Equations are not built while someone types.
-            while let Ok(next) = received.recv_timeout(QUIET) {
+            while let Ok(next) = received.recv_timeout(TUNING.quiet) {
                 latest.insert(next.path.clone(), next);
             }
             for Question { path, reading, scenes } in latest.into_values() {

@@ -15,6 +15,7 @@ mod requests;
 mod schema;
 mod server;
 mod text;
+pub mod tuning;
 mod uri;
 mod values;
 mod workspace;

@@ -4,9 +4,7 @@
 use serde_json::Value;
 
 use super::context::Step;
-
-/// References and choices that are followed one into the other.
-const DEPTH: usize = 12;
+use super::tuning::TUNING;
 
 /// The schema.
 pub struct Schema(Value);
@@ -62,7 +60,7 @@ impl Schema {
     /// A schema with all that it refers to or chooses from.
     fn choices<'s>(&'s self, schema: &'s Value) -> Vec<&'s Value> {
         let mut found = Vec::new();
-        self.add_choices(schema, DEPTH, &mut found);
+        self.add_choices(schema, TUNING.depth_of_schema, &mut found);
         found
     }
 

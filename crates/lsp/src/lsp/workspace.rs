@@ -12,18 +12,15 @@ use lsp_types::Uri;
 
 use super::names::Names;
 use super::text::Text;
+use super::tuning::TUNING;
 use crate::model::{Description, Opened, read_open};
-use crate::syntax::Diagnostics;
 use crate::syntax::text_file::read_text;
-use crate::syntax::tuning::TUNING;
 use crate::syntax::within::OpenTexts;
 use crate::syntax::yaml::{self, Entry, Value};
+use crate::syntax::{self, Diagnostics};
 
 /// Keys of a file of assemblies.
 const KEYS_OF_PART: [&str; 3] = ["description", "include", "assemblies"];
-
-/// Files of a folder that are examined for an `include`.
-const MOST_FILES: usize = 200;
 
 /// A text that an editor has open.
 #[derive(Clone, Debug)]
@@ -139,7 +136,7 @@ impl Workspace {
             return path;
         }
         for candidate in self.including(part) {
-            let text = read_text(&candidate, TUNING.file_bytes).unwrap_or_default();
+            let text = read_text(&candidate, syntax::tuning::TUNING.file_bytes).unwrap_or_default();
             let open = open.with(candidate.clone(), text);
             self.read(candidate.clone(), &open, false);
             if self.models.get(&candidate).is_some_and(|own| own.files.contains(part)) {
@@ -166,9 +163,9 @@ impl Workspace {
             files.retain(|path| path != part && !self.documents.contains_key(path));
             files.retain(|path| path.extension().is_some_and(|own| own == "yaml" || own == "yml"));
             files.sort_unstable();
-            files.truncate(MOST_FILES);
+            files.truncate(TUNING.most_files);
             found.extend(files.into_iter().filter(|path| {
-                let text = read_text(path, TUNING.file_bytes).unwrap_or_default();
+                let text = read_text(path, syntax::tuning::TUNING.file_bytes).unwrap_or_default();
                 text.contains("include") && text.contains(name)
             }));
         }

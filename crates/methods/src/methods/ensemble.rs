@@ -12,6 +12,7 @@ use symdiff::taylor_model::ModelSpace;
 use super::closure::Closure;
 use super::followed::FollowedEnds;
 use super::proof::{EnclosedRow, EnclosureEnd, Proof};
+use super::tuning::TUNING;
 use crate::certificate::Certified;
 use crate::multibody::{ConstraintId, EquationId};
 use crate::numerics::{CutMotions, EMPTY, ParameterBox, Range, Sample, ScanBounds, ScanGrid, SegmentMotions};
@@ -25,7 +26,7 @@ pub type EnsembleError = Box<dyn std::error::Error + Send + Sync>;
 pub struct Interrupted;
 
 /// Simulations that one order of a jet counts as in progress reports.
-pub const JET_WORK: usize = 5;
+pub const JET_WORK: usize = TUNING.jet_work;
 
 /// Values kept of a simulation in each row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]

@@ -1,10 +1,8 @@
 //! A row's expanded motion, and the outputs that follow from it through the loop closure.
 
 use super::closure::Closure;
+use super::tuning::TUNING;
 use crate::numerics::{ParameterBox, Phase, SparseBasis, SparseWork};
-
-/// ξ beyond the box by less is of its end.
-const ROUNDING: f64 = 1e-12;
 
 /// How motions are moved, to see what that does to outputs.
 #[derive(Clone, Debug, Default)]
@@ -97,7 +95,7 @@ impl Expansion<'_> {
         let at = |parameter: usize, point: &P| {
             let xi = point.as_ref()[parameter];
             // Coordinates go on beyond the box, and so do parameters: with those of its end, outputs had a kink.
-            match xi.abs() <= 1.0 + ROUNDING {
+            match xi.abs() <= 1.0 + TUNING.beyond_box {
                 true => self.domain.value(parameter, xi),
                 false => self.domain.midpoint(parameter) + self.domain.half_width(parameter) * xi,
             }

@@ -13,12 +13,15 @@ mod proof;
 mod registry;
 mod request;
 mod result;
+pub(crate) mod tuning;
 mod validation;
 
 mod certified;
 mod chebyshev;
 mod scan;
 mod taylor;
+
+use tuning::TUNING;
 
 pub use certified::Certified;
 pub use chebyshev::{Chebyshev, Degree, Expand, MOST_ON_GRIDS, can_compose, ends_of_combinations};
@@ -35,15 +38,16 @@ pub use request::{Budget, MOST_SIMULATIONS, Problem};
 pub use result::{BandBuilder, MethodResult};
 pub use scan::Scan;
 pub use taylor::Taylor;
+pub use tuning::tuning;
 pub use validation::{Ensembles, Validation};
 
 /// Least and largest counts that can be asked for, by the keys of the file: definition in the schema, key, least,
 /// largest.
 pub const COUNTS: [(&str, &str, usize, usize); 5] = [
-    ("Chebyshev", "order", 1, chebyshev::MOST_ORDER),
-    ("Chebyshev", "nodes", 2, chebyshev::MOST_NODES),
-    ("Taylor", "order", 1, taylor::MOST_ORDER),
-    ("Scan", "points", 2, scan::MOST_POINTS),
+    ("Chebyshev", "order", 1, chebyshev::tuning::TUNING.most_order),
+    ("Chebyshev", "nodes", 2, chebyshev::tuning::TUNING.most_nodes),
+    ("Taylor", "order", 1, TUNING.most_taylor_order),
+    ("Scan", "points", 2, TUNING.most_points),
     ("Budget", "solves", 1, MOST_SIMULATIONS as usize),
 ];
 

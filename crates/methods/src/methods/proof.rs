@@ -2,15 +2,8 @@
 
 use symdiff::Interval;
 
+use super::tuning::TUNING;
 use crate::certificate::Piece;
-
-/// Order of the polynomials by the number of parameters, of a proof of the motion: pieces and coefficients grow with
-/// powers of that number.
-const ORDER_OF_MOTION: [usize; 4] = [14, 12, 12, 8];
-
-/// The same of a proof of the scheme. (Slider crank, ±1 % of one: 8, 12 and 16 reach 0.51, 0.71 and 0.72 s in one
-/// piece.)
-const ORDER_OF_SCHEME: [usize; 3] = [0, 12, 6];
 
 /// The proven motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -26,8 +19,8 @@ impl Proof {
     /// Orders of polynomials, by the number of parameters.
     pub(super) fn orders(self) -> &'static [usize] {
         match self {
-            Self::Motion => &ORDER_OF_MOTION,
-            Self::Scheme => &ORDER_OF_SCHEME,
+            Self::Motion => &TUNING.orders_of_motion,
+            Self::Scheme => &TUNING.orders_of_scheme,
         }
     }
 

@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 
+use super::tuning::TUNING;
 use super::{BoundsRequest, Method};
 use crate::grammar::mapping::Grammar;
 use crate::grammar::mentions::NameKind;
@@ -12,13 +13,10 @@ use crate::syntax::codes::Code;
 use crate::syntax::suggest::{self, clip};
 use crate::syntax::yaml::{Entry, Value};
 
-/// Errors below this share of an output's range drown in rounding.
-const LEAST_TOLERANCE: f64 = 1e-8;
-
 const RANGES: [(&str, RangeKind); 2] = [("tight", RangeKind::Tight), ("interval", RangeKind::Interval)];
 
 /// Simulations that one method may ask for.
-pub const MOST_SIMULATIONS: f64 = 1e7;
+pub const MOST_SIMULATIONS: f64 = TUNING.most_simulations;
 
 /// Where the search for bounds within a tolerance ends at the latest.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -52,7 +50,7 @@ pub struct Problem {
 
 impl BoundsRequest {
     /// Error relative to the output's range that is aimed at where a degree is to be chosen and no tolerance is given.
-    pub const TOLERANCE: f64 = 1e-3;
+    pub const TOLERANCE: f64 = TUNING.tolerance;
 }
 
 /// Keeps the entries of some parameters.
@@ -99,8 +97,8 @@ fn unspecified(parameters: usize, tolerance: Option<f64>) -> Problem {
 fn tolerance<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: &Fields) -> Option<f64> {
     let node = fields.get("tolerance")?;
     let tolerance = reader.number(node, Dimension::NUMBER)?;
-    if !(LEAST_TOLERANCE..1.0).contains(&tolerance) {
-        let message = format!("a tolerance of {tolerance} is not from {LEAST_TOLERANCE:e} to below 1");
+    if !(TUNING.least_tolerance..1.0).contains(&tolerance) {
+        let message = format!("a tolerance of {tolerance} is not from {:e} to below 1", TUNING.least_tolerance);
         let help = "it is relative to how far an output ranges: 1e-3 is a thousandth of that".to_owned();
         reader.error(Code::OutOfRange, node.span.clone(), message, help);
         return None;

@@ -6,13 +6,10 @@ use std::sync::Arc;
 use super::ensemble::Simulated;
 use super::followed::Sensitivity;
 use super::kept::KeptSurrogate;
+use super::tuning::TUNING;
 use super::validation::Validation;
 use crate::certificate::Certified;
 use crate::numerics::{Range, largest, surrogate_error};
-
-/// How much further a polynomial may be from a function with a kink than it is at validation samples: it is worst at
-/// the kink, and there they need not be.
-pub(super) const BETWEEN_KINKS: f64 = 3.0;
 
 /// A method's bands of all outputs, their errors, and their cost.
 #[derive(Clone, Debug, Default)]
@@ -132,7 +129,7 @@ impl BandBuilder {
         for (row, found) in rows.zip(found.chunks_exact_mut(self.bands.len())) {
             for (output, found) in found.iter_mut().enumerate() {
                 let seen = surrogate_error(&found.at_validation, &validation.direct.at(row, output));
-                let error = if kinks.get(output) == Some(&true) { BETWEEN_KINKS * seen } else { seen };
+                let error = if kinks.get(output) == Some(&true) { TUNING.between_kinks * seen } else { seen };
                 self.set(row, output, found.range, largest([error, found.truncation]) + found.excess);
                 self.sensitivities[output][row] = found.sensitivity.take();
             }

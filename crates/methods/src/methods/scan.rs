@@ -6,12 +6,10 @@ use super::ensemble::{Ensemble, EnsembleError};
 use super::registry::{About, BoundingMethod, CostCurve, Refusal, Registered, Varied};
 use super::request::{self, MOST_SIMULATIONS, Problem};
 use super::result::{BandBuilder, MethodResult};
+use super::tuning::TUNING;
 use super::validation::Validation;
 use crate::grammar::{Fields, Reader, SymbolTable};
 use crate::numerics::{ParameterBox, ScanGrid, largest};
-
-/// Most points along an axis.
-pub(super) const MOST_POINTS: usize = 1_000_000;
 
 /// Keys of the file.
 pub mod keys {
@@ -38,7 +36,7 @@ pub struct Scan {
 
 impl Scan {
     /// Points along an axis where a model asks for none, the paper's.
-    pub const POINTS: usize = 30;
+    pub const POINTS: usize = TUNING.points;
 
     /// One number of points for each of k parameters.
     pub fn of_points(points: usize, k: usize) -> Self {
@@ -52,7 +50,7 @@ impl Scan {
         uncertain: &[String],
         _tolerance: Option<f64>,
     ) -> Option<Self> {
-        let points = request::per_parameter(reader, fields, "points", uncertain, 2..=MOST_POINTS, Self::POINTS)?;
+        let points = request::per_parameter(reader, fields, "points", uncertain, 2..=TUNING.most_points, Self::POINTS)?;
         let scan = Self { points };
         let simulations = scan.samples().unwrap_or(f64::INFINITY);
         request::check_simulations(reader, fields, "points", uncertain.len(), simulations);

@@ -10,16 +10,11 @@ use super::ensemble::{Ensemble, EnsembleError, JET_WORK};
 use super::registry::{About, BoundingMethod, CostCurve, Refusal, Registered, Varied};
 use super::request::{self, Budget, Problem};
 use super::result::{BandBuilder, MethodResult, PolynomialEstimate};
+use super::tuning::TUNING;
 use super::validation::Validation;
 use crate::grammar::{Fields, Reader, SymbolTable};
 use crate::numerics::{RangeKind, TaylorRange};
 use crate::syntax::codes::Code;
-
-/// Coefficients of a Taylor polynomial.
-const MOST_COEFFICIENTS: f64 = 1e5;
-
-/// Highest order.
-pub(super) const MOST_ORDER: usize = 50;
 
 /// Keys of the file.
 pub mod keys {
@@ -50,7 +45,7 @@ pub struct Taylor {
 
 impl Taylor {
     /// Degree where a model asks for none, the paper's.
-    pub const ORDER: usize = 2;
+    pub const ORDER: usize = TUNING.taylor_order;
 
     /// Reads its keys.
     pub(super) fn read<S: SymbolTable>(
@@ -60,17 +55,18 @@ impl Taylor {
         _tolerance: Option<f64>,
     ) -> Option<Self> {
         let range = request::range(reader, fields);
-        let order = fields.get("order").map_or(Some(Self::ORDER), |node| reader.count(node, 1, MOST_ORDER))?;
+        let order =
+            fields.get("order").map_or(Some(Self::ORDER), |node| reader.count(node, 1, TUNING.most_taylor_order))?;
         // Monomials of degree up to n in k variables: (n + k)! / (n! k!).
         let uncertain = uncertain.len();
         let coefficients = (1..=uncertain).fold(1.0, |count, k| count * (order + k) as f64 / k as f64);
-        if coefficients > MOST_COEFFICIENTS {
+        if coefficients > TUNING.most_coefficients {
             let message = format!("order {order} in {uncertain} parameters has {coefficients:.2e} coefficients");
             reader.error(
                 Code::TooLarge,
                 fields.key_span("order"),
                 message,
-                format!("at most {MOST_COEFFICIENTS:e} can be computed"),
+                format!("at most {:e} can be computed", TUNING.most_coefficients),
             );
         }
         Some(Self { order, range: range? })

@@ -2,20 +2,11 @@
 //! halved.
 
 use super::ensemble::{Effort, Ensemble, EnsembleError, Observed, Sampling, Simulated, Until, lines};
+use super::tuning::TUNING;
 use crate::numerics::{
     BandError, Correction, Differences, Ledger, Range, Sample, TimeShift, Turning, corners_by_slopes, corrections,
     largest, step_validation, time_error, validation,
 };
-
-/// An output whose span halved steps make smaller than this share of it is conserved: a scheme of second order takes
-/// away three quarters of what is its error alone.
-const CONSERVED: f64 = 0.3;
-
-/// Corners, at most, that slopes name as further samples.
-const CORNERS: usize = 8;
-
-/// Width of an output's range, relative to its values, that is rounding.
-const ROUNDING: f64 = 1e-10;
 
 /// Samples of a box that a surrogate has not seen, with their values.
 #[derive(Clone, Copy, Debug)]
@@ -115,7 +106,7 @@ impl ValidationTable {
         let all: Vec<usize> = (0..self.samples).collect();
         let spans: Vec<f64> = (0..self.outputs).map(|output| self.span(output, &all, 0.0)).collect();
         let lines = self.of_outputs().flat_map(|row| spans.iter().copied().zip(row.chunks_exact(self.samples)));
-        corners_by_slopes(k, CORNERS, lines.filter(|(span, _)| *span > 0.0))
+        corners_by_slopes(k, TUNING.corners_of_slopes, lines.filter(|(span, _)| *span > 0.0))
     }
 
     /// Rows that were reached.
@@ -131,7 +122,7 @@ impl ValidationTable {
         let values = lines.flat_map(|line| samples.iter().map(|&sample| line[sample]));
         let (lower, upper) = values
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(lower, upper), value| (lower.min(value), upper.max(value)));
-        let least = least.max(ROUNDING * lower.abs().max(upper.abs()));
+        let least = least.max(TUNING.rounding_of_width * lower.abs().max(upper.abs()));
         if upper - lower <= least { 0.0 } else { (upper - lower).max(0.0) }
     }
 
@@ -143,7 +134,7 @@ impl ValidationTable {
         let of = |output: usize| {
             let least = ensemble.rounding(output);
             let [own, finer] = [self, halved].map(|table| table.span(output, &odd.indices, least));
-            let is_error = |finer: f64| finer < CONSERVED * own;
+            let is_error = |finer: f64| finer < TUNING.conserved * own;
             if is_error(finer) && is_error(odd.table.span(output, &first, least)) {
                 return 0.0;
             }

@@ -9,6 +9,7 @@ pub mod meshing;
 mod random;
 pub mod shapes;
 mod trajectory;
+pub(crate) mod tuning;
 
 pub use excitation::{Class, Excitation};
 pub use form::{Bend, Form, Shape, SurfaceAt, Surroundings};

@@ -15,6 +15,7 @@
 
 use symdiff::{Formula, Scalar, Unary, math};
 
+use super::tuning::TUNING;
 use crate::numerics::statistics::Normals;
 use crate::numerics::{Bin, Spectrum};
 
@@ -23,9 +24,6 @@ const LARGEST: f64 = 4_294_967_296.0;
 
 /// Stream of the whole numbers, the same in all models.
 const STREAM: usize = 8608;
-
-/// Exponents of the law of ν in a bin that are zero.
-const NO_EXPONENT: f64 = 1e-9;
 
 /// A stationary random function.
 #[derive(Clone, Debug)]
@@ -101,7 +99,7 @@ fn frequency<'g>(bin: &Bin, share: Scalar<'g>) -> Scalar<'g> {
         return share * to;
     }
     let ratio = to / from;
-    if exponent.abs() < NO_EXPONENT {
+    if exponent.abs() < TUNING.no_exponent {
         return from * (share * math::ln(ratio)).exp();
     }
     from * ((1.0 + share * (math::pow(ratio, exponent) - 1.0)).ln() / exponent).exp()

@@ -20,10 +20,8 @@ use symdiff::{Formula, Scalar};
 
 use super::excitation::Excitation;
 use super::random::RandomFunction;
+use super::tuning::TUNING;
 use crate::grammar::quantity::Dimension;
-
-/// Shares of a move that two ramps leave are none below this.
-const NEGLIGIBLE: f64 = 1e-9;
 
 /// A value over the time.
 #[derive(Clone, Debug)]
@@ -183,7 +181,7 @@ fn trapezoidal<'g>(pieces: &mut Vec<Piece<'g>>, u: Scalar<'g>, r: Option<Scalar<
     let twice = 2.0 * (r * (one - r));
     pieces.push((begin + r * h, x + d * (u * u / twice)));
     let between = one - 2.0 * r;
-    if between.as_constant().is_none_or(|share| share > NEGLIGIBLE) {
+    if between.as_constant().is_none_or(|share| share > TUNING.negligible_share) {
         pieces.push((end - r * h, x + d * ((u - 0.5 * r) / (one - r))));
     }
     pieces.push((end, next - d * (left * left / twice)));

@@ -1,6 +1,6 @@
 //! Constants of the room `expand`.
 
-use crate::syntax::tuning::tuning;
+use symdiff::constants::tuning;
 
 tuning! {
     /// Trees that are written out.

@@ -8,15 +8,16 @@ use symdiff::formula::Term;
 use super::description::{Analysis, BlackBox, BoxOutput, Description, Formulation, Output, Program, Protocol, Refine};
 use super::fmu;
 use super::parameters::unit;
+use super::tuning::TUNING;
 use crate::grammar::display_unit::DisplayUnit;
 use crate::grammar::quantity::Dimension;
 use crate::grammar::report::Fields;
 use crate::keys;
 use crate::model::names::Reader;
+use crate::syntax;
 use crate::syntax::codes::Code;
 use crate::syntax::suggest::{self, clip};
 use crate::syntax::text_file::read_text;
-use crate::syntax::tuning::TUNING;
 use crate::syntax::yaml::{Entry, Node, Value};
 
 /// Sections of a mechanism.
@@ -47,9 +48,6 @@ const OF_STEPS: [&str; 6] = ["step", "tolerance", "alpha", "formulation", "schem
 const PROTOCOLS: [(&str, Protocol); 2] = [("json", Protocol::Json), ("csv", Protocol::Csv)];
 
 const YES_OR_NO: [(&str, bool); 2] = [("true", true), ("false", false)];
-
-/// Most processes, points of a call, and attempts: more must be a slip.
-const MOST: usize = 10_000;
 
 /// Reads the section, after the names of the parameters, which are `entries`; `model` is the model's file.
 pub fn read(reader: &mut Reader, fields: &Fields, entries: &[Entry], model: &Path) {
@@ -91,9 +89,9 @@ pub fn read(reader: &mut Reader, fields: &Fields, entries: &[Entry], model: &Pat
         }
         Some((_, asked)) => asked.unwrap_or(is_json),
     };
-    let mut number = |key: &str| fields.get(key).and_then(|node| reader.count(node, 1, MOST));
+    let mut number = |key: &str| fields.get(key).and_then(|node| reader.count(node, 1, TUNING.most_of_black_box));
     let (processes, points) = (number("processes"), number("points"));
-    let retries = fields.get("retries").and_then(|node| reader.count(node, 0, MOST)).unwrap_or(1);
+    let retries = fields.get("retries").and_then(|node| reader.count(node, 0, TUNING.most_of_black_box)).unwrap_or(1);
     let time_limit = fields.get("time_limit").and_then(|node| {
         let value = reader.number(node, Dimension::TIME)?;
         if value <= 0.0 {
@@ -201,7 +199,7 @@ fn note_files(reader: &mut Reader, command: &[String], directory: Option<&Path>)
     for word in command {
         let path = directory.unwrap_or_else(|| Path::new("")).join(word);
         if path.is_file()
-            && let Ok(text) = read_text(&path, TUNING.file_bytes)
+            && let Ok(text) = read_text(&path, syntax::tuning::TUNING.file_bytes)
         {
             reader.diagnostics.sources.add(path.display().to_string(), text);
         }

@@ -3,6 +3,7 @@
 use symdiff::Formula;
 
 use super::names::Reader;
+use super::tuning::TUNING;
 use crate::elements::{RandomFunction, Timing, Trajectory};
 use crate::grammar::dimension::KnownDimension;
 use crate::grammar::quantity::Dimension;
@@ -11,7 +12,6 @@ use crate::grammar::{Context, Symbol};
 use crate::keys;
 use crate::model::description::{Analysis, Joint, Parameter, ParameterValue};
 use crate::model::parameters::seed_of;
-use crate::model::tuning::TUNING;
 use crate::numerics::Spectrum;
 use crate::numerics::statistics::Normals;
 use crate::syntax::codes::Code;

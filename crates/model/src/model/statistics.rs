@@ -2,13 +2,13 @@
 
 use super::description::{Analysis, Correlation, ParameterValue};
 use super::parameters::law::{LawInterval, named};
+use super::tuning::TUNING;
 use crate::grammar::mentions::NameKind;
 use crate::grammar::quantity::Dimension;
 use crate::grammar::report::Fields;
 use crate::grammar::unit::number_and_unit;
 use crate::keys;
 use crate::model::names::Reader;
-use crate::model::tuning::TUNING;
 use crate::numerics::statistics::Copula;
 use crate::syntax::codes::Code;
 use crate::syntax::source::Span;
@@ -18,15 +18,12 @@ use crate::syntax::yaml::{Node, Value};
 /// Shares below the quantiles where none are named: the ends of ±3σ of a normal law, and the median.
 const QUANTILES: [f64; 3] = [0.00135, 0.5, 0.99865];
 
-/// Seed of samples where none is named.
-const SEED: usize = 1;
-
 /// Samples that can be asked for.
 const SAMPLES: std::ops::RangeInclusive<usize> = 1 << 10..=1 << 24;
 
 /// Reads the section, and completes what parameters say of their laws.
 pub fn read(reader: &mut Reader, section: Option<(&Node, Span)>) {
-    (reader.model.statistics.quantiles, reader.model.statistics.seed) = (QUANTILES.to_vec(), SEED);
+    (reader.model.statistics.quantiles, reader.model.statistics.seed) = (QUANTILES.to_vec(), TUNING.seed);
     // A stack is asked for its distribution, too.
     let is_stack = reader.model.analysis == Analysis::Dimensions || !reader.model.chains.is_empty();
     let is_uncertain = reader.model.uncertain().next().is_some() && reader.model.bounds.chebyshev.is_some();
@@ -38,7 +35,7 @@ pub fn read(reader: &mut Reader, section: Option<(&Node, Span)>) {
         reader.model.statistics.samples = reader.count(node, *SAMPLES.start(), *SAMPLES.end());
     }
     if let Some(node) = fields.get("seed") {
-        reader.model.statistics.seed = reader.count(node, 0, TUNING.most_seeds).unwrap_or(SEED);
+        reader.model.statistics.seed = reader.count(node, 0, TUNING.most_seeds).unwrap_or(TUNING.seed);
     }
     if let Some(node) = fields.get("exposure") {
         exposure(reader, node);

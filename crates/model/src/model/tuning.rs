@@ -1,6 +1,6 @@
 //! Constants of the room `model`, and those of all rooms up to it.
 
-use crate::syntax::tuning::{Constant, tuning};
+use symdiff::constants::{Constant, tuning};
 
 tuning! {
     /// Models.
@@ -53,18 +53,23 @@ tuning! {
         link_inertia: f64 = 1e-6, moves "bounds of robots with such links";
         /// Least radius of gyration of a link, squared, m².
         link_radius_squared: f64 = 1e-8, moves "bounds of robots with such links";
+        /// Most processes, points of a call, and attempts: more must be a slip.
+        most_of_black_box: usize = 10_000, moves "which models are refused";
+        /// Seed of samples where none is named.
+        seed: usize = 1, moves "samples of statistics";
     }
 }
 
 const _: () =
     assert!(TUNING.beam_elements <= TUNING.most_beam_elements && TUNING.frequencies <= TUNING.most_frequencies);
 
-/// Constants of text, grammar, formats of robots and models, room by room.
+/// Constants of text, grammar, formats of robots, elements and models, room by room.
 pub fn tuning() -> Vec<Constant> {
     [
         crate::syntax::tuning::Tuning::constants(),
         crate::grammar::tuning::Tuning::constants(),
         crate::robots::tuning::Tuning::constants(),
+        crate::elements::tuning::Tuning::constants(),
         crate::expand::tuning::Tuning::constants(),
         Tuning::constants(),
     ]

@@ -1,6 +1,6 @@
 //! Constants of the room `robots`.
 
-use crate::syntax::tuning::tuning;
+use symdiff::constants::tuning;
 
 tuning! {
     /// Files of robots.

@@ -1,5 +1,7 @@
 //! How far a response may go beyond a sample and its neighbours along an axis.
 
+use super::tuning::TUNING;
+
 /// A sample among those along one axis.
 pub(super) struct Along<'a> {
     /// Values of the part's samples.
@@ -13,15 +15,6 @@ pub(super) struct Along<'a> {
     /// and the axis' samples.
     pub count: usize,
 }
-
-/// Second differences may grow so much from one sample to the next where the response is smooth, and so much more where
-/// those before grow, as far as that goes.
-const GROWTH: f64 = 1.5;
-const MOST_GROWTH: f64 = 8.0;
-
-/// The slope at the first of a row of samples is known to this share of their second difference, or better; and so is
-/// the second difference of three.
-const UNSURE: f64 = 0.25;
 
 impl Along<'_> {
     /// The value so many samples further; `None` beyond the axis' ends, and in another part of the scan.
@@ -40,7 +33,7 @@ impl Along<'_> {
     pub fn smooth(&self) -> Option<[f64; 2]> {
         let (here, before, after) = (self.value(0)?, self.value(-1)?, self.value(1)?);
         // Three samples do not tell how the second difference changes between them.
-        let unsure = if self.count == 3 { 1.0 + UNSURE } else { 1.0 };
+        let unsure = if self.count == 3 { 1.0 + TUNING.unsure } else { 1.0 };
         let height = unsure * (before - 2.0 * here + after).abs() / 8.0;
         let lowest = here <= before && here <= after;
         let highest = here >= before && here >= after;
@@ -62,7 +55,7 @@ impl Along<'_> {
         // Differences forwards: Δ − Δ²/2 + Δ³/3.
         let third = self.bend(2 * side).map(|next| next - bend);
         let slope = there - here - bend / 2.0 + third.unwrap_or_default() / 3.0;
-        let unsure = third.map_or(f64::INFINITY, |third| third.abs() / 3.0).min(UNSURE * bend.abs());
+        let unsure = third.map_or(f64::INFINITY, |third| third.abs() / 3.0).min(TUNING.unsure * bend.abs());
         // Towards the neighbour it rises if it bends upwards, and falls if it bends downwards.
         let back = unsure - slope * bend.signum();
         let is_end = (there - here) * bend >= 0.0;
@@ -108,9 +101,9 @@ impl Along<'_> {
     /// on; of the same sign, since one that changes it is too short a wave to tell.
     fn expected(&self, bend: f64, away: isize, outer: isize) -> Option<f64> {
         let (beside, beyond) = (self.bend(outer)?, self.bend(outer + (outer - away).signum())?);
-        let growth = (beside / beyond).abs().clamp(1.0, MOST_GROWTH);
+        let growth = (beside / beyond).abs().clamp(1.0, TUNING.most_growth);
         let growth = if growth.is_nan() { 1.0 } else { growth };
         let distance = (outer - away).unsigned_abs() as i32;
-        Some(if beside * bend < 0.0 { 0.0 } else { GROWTH * beside.abs() * growth.powi(distance) })
+        Some(if beside * bend < 0.0 { 0.0 } else { TUNING.growth * beside.abs() * growth.powi(distance) })
     }
 }

@@ -10,13 +10,7 @@ use std::collections::BinaryHeap;
 use super::range::{Enclosed, Range};
 use super::ranked::Ranked;
 use super::tensor::{Matrix, Separable, Work};
-
-/// A bound is good when it is this close to an attained value, relative to the width of the attained range.
-const TOLERANCE: f64 = 1e-3;
-/// About how many numbers are averaged before the bound is taken as it stands.
-const WORK_LIMIT: usize = 1 << 22;
-/// However many numbers that are, so often a box may be split.
-const MIN_SPLITS: usize = 64;
+use super::tuning::TUNING;
 
 /// Bounds polynomials of one shape.
 #[derive(Clone, Debug)]
@@ -43,7 +37,7 @@ impl Bernstein {
         Self {
             orders: orders.to_vec(),
             rounding: operations as f64 * f64::EPSILON * axes.iter().map(largest).product::<f64>(),
-            max_splits: (WORK_LIMIT / per_split).max(MIN_SPLITS),
+            max_splits: (TUNING.bernstein_work / per_split).max(TUNING.bernstein_splits),
             conversion: Separable::new(axes),
             work: Work::default(),
             boxes: BinaryHeap::new(),
@@ -70,7 +64,7 @@ impl Bernstein {
         self.keep(whole, attained);
         let mut splits = 0;
         while let Some(part) = self.boxes.pop() {
-            let close = part.rank - attained.upper <= TOLERANCE * attained.width();
+            let close = part.rank - attained.upper <= TUNING.bernstein_tolerance * attained.width();
             if close || splits == self.max_splits {
                 let rest = self.boxes.drain().map(|part| part.item);
                 self.spare.extend(rest.chain([part.item]));

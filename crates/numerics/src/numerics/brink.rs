@@ -2,13 +2,7 @@
 //! short of it.
 
 use super::extent::Extent;
-
-/// Distances from an end at which a jump is looked for: from 2 downwards, each a quarter of the one before.
-const DISTANCES: i32 = 26;
-/// A drop by this share of the range's width may be a jump.
-const DROP: f64 = 1e-3;
-/// After so many halvings two numbers in [−1, 1] have no other between them.
-const HALVINGS: usize = 64;
+use super::tuning::TUNING;
 
 /// Moves ends that stand short of a jump to its brink: along each axis, the first drop beside the end is halved until
 /// nothing lies between its two sides. `evaluate` gives all functions at some ξ, function by function.
@@ -16,7 +10,7 @@ const HALVINGS: usize = 64;
 /// Over several parameters the brink may rise along itself; an end that was moved may be off by as much again.
 pub fn to_brinks(extents: &mut [Extent], evaluate: impl Fn(&[Vec<f64>]) -> Vec<f64>) {
     let mut drops = drops(extents, &evaluate);
-    for _ in 0..HALVINGS {
+    for _ in 0..TUNING.halvings_of_brink {
         drops.retain(|drop| !drop.is_halved());
         if drops.is_empty() {
             break;
@@ -88,7 +82,7 @@ fn drops(extents: &mut [Extent], evaluate: &impl Fn(&[Vec<f64>]) -> Vec<f64>) ->
             for axis in 0..end.len() {
                 for way in [-1.0, 1.0] {
                     let from = end[axis];
-                    let distances = (0..DISTANCES).rev().map(|power| 2.0 * 0.25_f64.powi(power));
+                    let distances = (0..TUNING.distances).rev().map(|power| 2.0 * 0.25_f64.powi(power));
                     let mut along: Vec<f64> = distances.map(|by| (from + way * by).clamp(-1.0, 1.0)).collect();
                     along.dedup();
                     along.retain(|&xi| xi != from);
@@ -107,7 +101,7 @@ fn drops(extents: &mut [Extent], evaluate: &impl Fn(&[Vec<f64>]) -> Vec<f64>) ->
     drops.retain_mut(|drop| {
         let along = lines.next().unwrap_or_default();
         let values = &values[drop.function * points.len() + first..][..along.len()];
-        let least = DROP * extents[drop.function].range.width();
+        let least = TUNING.drop * extents[drop.function].range.width();
         include(&mut extents[drop.function], &points[first..][..along.len()], values);
         first += along.len();
         for (&xi, &value) in along.iter().zip(values) {

@@ -5,17 +5,8 @@
 //! whose minimisers follow from closed forms (C. Fleury, Structural weight optimization by dual methods of convex
 //! programming, Int. J. Numer. Meth. Eng. 14 (1979) 1761).
 
+use super::tuning::TUNING;
 use symdiff::math;
-
-/// Rounds over all multipliers, and when they have settled.
-const ROUNDS: usize = 400;
-const SETTLED: f64 = 1e-10;
-
-/// Halvings of the logarithm of a multiplier; how far below the first guess it is looked for, and how far above that at
-/// which the constraint alone makes all sizes as small as they may be.
-const HALVINGS: usize = 80;
-const SMALLEST: f64 = 1e-12;
-const LARGEST: f64 = 1e6;
 
 /// A constraint about the sizes at which it was linearised.
 #[derive(Clone, Debug, PartialEq)]
@@ -86,11 +77,11 @@ pub fn cheapest(
             slope if slope < 0.0 => power.multiplier(costs[i], slope, least[i]),
             _ => 0.0,
         };
-        LARGEST * (0..costs.len()).map(enough).filter(|most| most.is_finite()).fold(0.0, f64::max)
+        TUNING.largest_multiplier * (0..costs.len()).map(enough).filter(|most| most.is_finite()).fold(0.0, f64::max)
     };
     let most_of: Vec<f64> = constraints.iter().map(largest).collect();
     let mut multipliers = vec![0.0; constraints.len()];
-    for _ in 0..ROUNDS {
+    for _ in 0..TUNING.rounds_of_cheapest {
         let mut moved = 0.0_f64;
         for (index, constraint) in constraints.iter().enumerate() {
             let before = multipliers[index];
@@ -103,7 +94,7 @@ pub fn cheapest(
             multipliers[index] = found;
             moved = moved.max((found - before).abs() / found.max(before).max(f64::MIN_POSITIVE));
         }
-        if moved < SETTLED {
+        if moved < TUNING.settled_multipliers {
             break;
         }
     }
@@ -118,10 +109,10 @@ fn root(with: &mut dyn FnMut(f64) -> f64, before: f64, most: f64) -> f64 {
     while with(high) < 0.0 && high < most {
         high = (4.0 * high).min(most);
     }
-    while with(low) >= 0.0 && low > SMALLEST * guess {
+    while with(low) >= 0.0 && low > TUNING.smallest_multiplier * guess {
         low *= 0.25;
     }
-    for _ in 0..HALVINGS {
+    for _ in 0..TUNING.halvings_of_multiplier {
         let middle = (low * high).sqrt();
         if with(middle) < 0.0 { low = middle } else { high = middle }
     }

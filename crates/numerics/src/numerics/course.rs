@@ -5,23 +5,9 @@
 //! their box too, which takes polynomials of high degree. All of them ripple at the same places, so that s does not.
 
 use super::range::Range;
+use super::tuning::TUNING;
 
-/// Least rate on the way, as a share of the mean where samples are: where the course all but rests, times tell no
-/// places.
-const SLOWEST: f64 = 0.05;
-/// Fewest rows of a way.
-const ROWS: usize = 4;
-/// Fewest rows that are taken beside a way.
-const BEYOND: usize = 32;
-/// Places within a piece at which it has to rise.
-const LOOKS: usize = 4;
-/// Rows that a piece is made through, at either side, and its terms: a value and a rate of each.
-const BESIDE: usize = 2;
-const TERMS: usize = 4 * BESIDE;
-/// The last step of the search for a time, as a share of the piece.
-const CLOSE: f64 = 1e-7;
-/// Most steps of the search for a time.
-const STEPS: usize = 64;
+const TERMS: usize = 4 * TUNING.rows_beside;
 
 /// A course: values and rates in rows, and polynomials between them.
 #[derive(Clone, Debug)]
@@ -55,7 +41,7 @@ pub struct Phase<'c> {
 
 impl Piece {
     fn new(times: &[f64], values: &[f64], rates: &[f64], row: usize) -> Self {
-        let first = (row + 1).saturating_sub(BESIDE).min(times.len() - 2 * BESIDE);
+        let first = (row + 1).saturating_sub(TUNING.rows_beside).min(times.len() - 2 * TUNING.rows_beside);
         let of = |index: usize| first + index / 2;
         let nodes: [f64; TERMS] = std::array::from_fn(|index| times[of(index)]);
         let mut differences: [f64; TERMS] = std::array::from_fn(|index| values[of(index)]);
@@ -73,8 +59,8 @@ impl Piece {
 
     /// Least and largest rate seen between two times; where one is NaN, the piece does not rise.
     fn rates(&self, (from, to): (f64, f64)) -> (f64, f64) {
-        let rate = |look: usize| self.at(from + look as f64 / LOOKS as f64 * (to - from)).1;
-        (0..=LOOKS).map(rate).fold((f64::INFINITY, 0.0), |(least, largest), rate| {
+        let rate = |look: usize| self.at(from + look as f64 / TUNING.looks as f64 * (to - from)).1;
+        (0..=TUNING.looks).map(rate).fold((f64::INFINITY, 0.0), |(least, largest), rate| {
             (if rate >= least { least } else { rate }, rate.max(largest))
         })
     }
@@ -93,7 +79,7 @@ impl Piece {
 impl Course {
     /// Of a coordinate's values and rates at ascending times; `None` of too few.
     pub fn new(times: Vec<f64>, mut values: Vec<f64>, mut rates: Vec<f64>) -> Option<Self> {
-        if times.len() < 2 * BESIDE {
+        if times.len() < 2 * TUNING.rows_beside {
             return None;
         }
         let sign = if values.last() < values.first() { -1.0 } else { 1.0 };
@@ -126,16 +112,17 @@ impl Course {
         if !(low < high && begin < end) {
             return None;
         }
-        let least = SLOWEST * (self.values[end] - self.values[begin]) / (self.times[end] - self.times[begin]);
+        let least =
+            TUNING.slowest_course * (self.values[end] - self.values[begin]) / (self.times[end] - self.times[begin]);
         let rises = |rates: &(f64, f64)| rates.0 >= least;
         if !self.rates[begin..end].iter().all(rises) {
             return None;
         }
-        let beside = (end - begin).max(BEYOND);
+        let beside = (end - begin).max(TUNING.fewest_rows_beside);
         begin -= self.rates[..begin].iter().rev().take(beside).take_while(|rates| rises(rates)).count();
         end += self.rates[end..].iter().take(beside).take_while(|rates| rises(rates)).count();
         let steepest = self.rates[begin..end].iter().fold(0.0_f64, |most, rates| most.max(rates.1));
-        (end >= begin + ROWS).then_some(Phase { course: self, begin, end, steepest })
+        (end >= begin + TUNING.fewest_rows).then_some(Phase { course: self, begin, end, steepest })
     }
 }
 
@@ -176,9 +163,9 @@ impl Phase<'_> {
         let row = values[self.begin + 1..self.end].partition_point(|&row| row <= value) + self.begin;
         let (mut low, mut high) = (times[row], times[row + 1]);
         let mut time = low + (high - low) * (value - values[row]) / (values[row + 1] - values[row]);
-        let settled = (CLOSE * (high - low)).max(2.0 * f64::EPSILON * time.abs());
+        let settled = (TUNING.close_time * (high - low)).max(2.0 * f64::EPSILON * time.abs());
         // Newton's method, within the interval known to contain the time.
-        for _ in 0..STEPS {
+        for _ in 0..TUNING.steps_to_time {
             let (at, rate) = pieces[row].at(time);
             if at > value {
                 high = time

@@ -6,12 +6,8 @@
 
 use symdiff::math;
 
-use super::sparse_basis::{Before, LEAST_DEGREE, SparseBasis};
-
-/// Share of the rate over all higher degrees that the rate at the highest has at least.
-const CAUTION: f64 = 0.7;
-/// Slower than this is taken for no decay at all.
-const SLOWEST: f64 = 0.99;
+use super::sparse_basis::{Before, SparseBasis};
+use super::tuning::TUNING;
 
 /// Size of the terms beyond those of a polynomial; zero where degrees are too low to tell.
 ///
@@ -30,7 +26,7 @@ pub fn truncation(basis: &SparseBasis, coefficients: &[f64]) -> f64 {
         let (mut least, mut slowest) = (f64::INFINITY, 0.0_f64);
         let sum: f64 = index.iter().map(|before| f64::from(before.degree)).sum();
         for before in index {
-            let rate = (rates[usize::from(before.axis)]? * sum / f64::from(before.degree)).min(SLOWEST);
+            let rate = (rates[usize::from(before.axis)]? * sum / f64::from(before.degree)).min(TUNING.slowest_decay);
             // Even or odd degrees may be missing.
             least = least.min(rate * size(Some(before.last)).max(rate * size(before.earlier)));
             slowest = slowest.max(rate);
@@ -53,7 +49,7 @@ impl Tail {
     /// `None` where nothing follows, or where the degree is too low to tell.
     fn along(basis: &SparseBasis, coefficients: &[f64], axis: usize) -> Option<Self> {
         let n = usize::from(basis.orders()[axis]);
-        if n < LEAST_DEGREE {
+        if n < TUNING.least_degree {
             return None;
         }
         // Largest of those of a degree and above.
@@ -77,7 +73,7 @@ impl Tail {
         // all higher degrees; in waves they may stand still.
         let fall = |from: usize| math::pow(envelope[n - 1] / envelope[from], 1.0 / (n - 1 - from) as f64);
         let overall = fall(n / 2);
-        let rate = fall(n - 3).clamp(CAUTION * overall, overall).min(SLOWEST);
+        let rate = fall(n - 3).clamp(TUNING.caution * overall, overall).min(TUNING.slowest_decay);
         Some(Self { last: envelope[n].max(rate * envelope[n - 1]), rate })
     }
 }

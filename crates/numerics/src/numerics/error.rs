@@ -12,36 +12,16 @@
 
 use super::envelope::envelope;
 use super::range::Range;
-
-/// A validation sample whose value lies within this share of the band's width from its end carries that end.
-const CARRIES: f64 = 0.25;
+use super::tuning::TUNING;
 
 /// Error at step h over what halving h changes: 1/(1 − 2⁻²) for a second-order scheme.
 pub const RICHARDSON: f64 = 4.0 / 3.0;
 
-/// What the estimates themselves may be wrong by.
-const SAFETY_OF_STEPS: f64 = 1.25;
-/// The same of the surrogate's.
-pub const SAFETY_OF_SURROGATE: f64 = 2.0;
+/// Factor by which the estimates of the steps' error may be wrong.
+pub const SAFETY_OF_STEPS: f64 = TUNING.safety_of_steps;
 
-/// Shares of a neighbour's error, and of the largest so far, below which no error falls.
-const NEIGHBOUR: f64 = 0.5;
-const LASTING: f64 = 0.02;
-
-/// A surrogate's error, its safety included, beyond this share of the width means that it does not follow the response.
-const LOST: f64 = 0.5;
-
-/// The same of the whole error, as a share of the output's span.
-const FAR_OFF: f64 = 0.25;
-
-/// A surrogate's error below this share of the output's span is none to speak of, however narrow the band is there.
-const SMALL: f64 = 1e-3;
-
-/// What an error that is large beside the band may be wrong by.
-const DOUBT: f64 = 2.0;
-
-/// A simulated value that lies outside of a band by less than this share of its own size does so by rounding.
-const ROUNDING: f64 = 1e-12;
+/// Factor by which the estimates of the surrogate's error may be wrong.
+pub const SAFETY_OF_SURROGATE: f64 = TUNING.safety_of_surrogate;
 
 /// A band's errors over the output times.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -73,7 +53,7 @@ pub fn step_error(direct: &[f64], halved: &[f64]) -> f64 {
 /// Samples without halved steps, after the others, do not count.
 pub fn time_error(range: Range, direct: &[f64], halved: &[f64]) -> f64 {
     let direct = &direct[..halved.len()];
-    let reach = CARRIES * range.width();
+    let reach = TUNING.carries * range.width();
     let of_end = |end: f64| {
         let distance = |index: &usize| (direct[*index] - end).abs();
         let nearest = (0..direct.len()).min_by(|a, b| distance(a).total_cmp(&distance(b)));
@@ -85,7 +65,7 @@ pub fn time_error(range: Range, direct: &[f64], halved: &[f64]) -> f64 {
 
 /// Whether each end of a band has a validation sample with halved steps near it, so that these tell its error.
 pub fn carries(range: Range, direct: &[f64]) -> bool {
-    let reach = CARRIES * range.width();
+    let reach = TUNING.carries * range.width();
     [range.lower, range.upper].iter().all(|end| direct.iter().any(|value| (value - end).abs() <= reach))
 }
 
@@ -112,8 +92,9 @@ impl BandError {
                 Some(tolerance) => !small(tolerance),
                 None => {
                     // However narrow the band is: of what nothing varies, rounding is all that there is.
-                    let follows = surrogate[row] <= (LOST * range.width()).max(SMALL * span) || at_rest;
-                    lost |= !(follows && small(FAR_OFF));
+                    let follows =
+                        surrogate[row] <= (TUNING.lost * range.width()).max(TUNING.small_error * span) || at_rest;
+                    lost |= !(follows && small(TUNING.far_off));
                     lost
                 }
             });
@@ -132,7 +113,8 @@ impl BandError {
             let beyond = range.misses(*simulated);
             // Of the unknown nothing follows.
             if beyond > self.total[row] {
-                let is_rounding = beyond <= ROUNDING * simulated.lower.abs().max(simulated.upper.abs());
+                let is_rounding =
+                    beyond <= TUNING.rounding_of_values * simulated.lower.abs().max(simulated.upper.abs());
                 contradicted[row] = !is_rounding;
                 self.total[row] = beyond;
             }
@@ -153,7 +135,7 @@ impl BandError {
     pub fn decisive(&self, row: usize) -> Option<f64> {
         match (self.unresolved[row], self.coarse[row]) {
             (false, _) => Some(self.total[row]),
-            (true, true) => Some(DOUBT * self.total[row]),
+            (true, true) => Some(TUNING.doubt * self.total[row]),
             (true, false) => None,
         }
     }
@@ -176,7 +158,8 @@ fn held_up(estimates: &[f64], safety: f64) -> Vec<f64> {
         let beside = [row.wrapping_sub(1), row + 1].map(|row| estimates.get(row).copied().unwrap_or(0.0));
         lasting = lasting.max(estimates[row]);
         // `max` passes over NaN.
-        let least = (NEIGHBOUR * beside[0]).max(NEIGHBOUR * beside[1]).max(LASTING * lasting);
+        let least =
+            (TUNING.of_neighbour * beside[0]).max(TUNING.of_neighbour * beside[1]).max(TUNING.of_largest * lasting);
         safety * if estimates[row] < least { least } else { estimates[row] }
     };
     (0..estimates.len()).map(held).collect()

@@ -1,9 +1,7 @@
 //! What a search says of a function's range: its ends, where they are, and how far they may be missed.
 
 use super::range::{Range, least, most};
-
-/// First distance of neighbours in the search near a known extreme, at most.
-pub(super) const NEAR: f64 = 0.1;
+use super::tuning::TUNING;
 
 /// A function's range.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,7 +19,7 @@ pub struct Extent {
 impl Extent {
     /// Of what cannot be bounded.
     pub fn unknown(dimension: usize) -> Self {
-        let zeros = || [vec![0.0; dimension], vec![NEAR; dimension]];
+        let zeros = || [vec![0.0; dimension], vec![TUNING.near_extreme; dimension]];
         let [place, spacing] = zeros();
         Self {
             range: Range::UNKNOWN,
@@ -33,7 +31,7 @@ impl Extent {
 
     /// Found at these places.
     pub fn at(range: Range, gap: f64, places: [Vec<f64>; 2]) -> Self {
-        let spacing = [vec![NEAR; places[0].len()], vec![NEAR; places[1].len()]];
+        let spacing = [vec![TUNING.near_extreme; places[0].len()], vec![TUNING.near_extreme; places[1].len()]];
         Self { range, gap, places, spacing }
     }
 

@@ -9,39 +9,15 @@
 
 use rustc_hash::FxHashMap;
 
-use super::extent::{Extent, NEAR};
+use super::extent::Extent;
 use super::lattice::Lattice;
 use super::peak::Peak;
 use super::range::Range;
 use super::samples::spread;
+use super::tuning::TUNING;
 
 /// The least and the largest value are sought.
 const SIGNS: [f64; 2] = [-1.0, 1.0];
-/// An end is found when a step changes less than this share of the range's width, or this one of what does not matter.
-const SETTLED: f64 = 1e-10;
-const SETTLED_OF_LEAST: f64 = 1.0 / 64.0;
-/// The best place is that of the peak where the quadratic's is no further from it.
-const STAYS: f64 = 1e-9;
-/// Neighbours that are nearer than this tell no peak from the best place.
-const FINEST: f64 = 1e-5;
-/// Most steps of the search for an end.
-const ROUNDS: usize = 16;
-/// A lattice is too coarse along an axis where a value is further than this share of the range from what those beside
-/// it tell: fewer than eight points to a wave.
-const COARSE: f64 = 0.03;
-/// What a check may find beyond the range, as a share of it, before the lattice is made finer.
-const BEYOND: f64 = 1e-4;
-/// Points of the check for those of the lattice, and at least.
-const CHECKS: usize = 4;
-const LEAST_CHECKS: usize = 8;
-/// Local extremes that are refined at once for each end.
-const CANDIDATES: usize = 6;
-/// How often more of them are, where one that is left may reach beyond the best by this share of the range's width: a
-/// range that is full of turns has many alike.
-const MORE: usize = 10;
-const LEFT: f64 = 1e-5;
-/// Most points of a lattice by the number of parameters.
-const MOST_POINTS: [usize; 3] = [4097, 16_641, 17_576];
 
 /// Extremes of functions over [−1, 1]^k at once: `evaluate` gives their values at some ξ, function by function. The
 /// first lattice has `intervals` ≥ 2 along each axis, one for each. What is not more than `least`, a number for each
@@ -52,7 +28,8 @@ pub fn extremes(intervals: &[usize], least: &[f64], evaluate: impl Fn(&[Vec<f64>
     loop {
         let points = lattice.points();
         let count = points.len();
-        let scattered = if intervals.is_empty() { 0 } else { (count / CHECKS).max(LEAST_CHECKS) };
+        let scattered =
+            if intervals.is_empty() { 0 } else { (count / TUNING.lattice_points_a_check).max(TUNING.least_checks) };
         let checks = spread(intervals.len(), scattered);
         let all = [points, checks.clone()].concat();
         let values = evaluate(&all);
@@ -65,7 +42,7 @@ pub fn extremes(intervals: &[usize], least: &[f64], evaluate: impl Fn(&[Vec<f64>
         }
         let search = |(output, line): (usize, &(&[f64], &[f64]))| Search::new(output, least[output], &lattice, line.0);
         let mut searches: Vec<Search> = lines.iter().enumerate().map(search).collect();
-        for _ in 0..MORE {
+        for _ in 0..TUNING.more_candidates {
             climb(&mut searches.iter_mut().flat_map(|search| &mut search.ends).collect::<Vec<_>>(), &evaluate);
             let mut refines = false;
             searches.iter_mut().for_each(|search| refines |= search.refine_more(&lattice));
@@ -77,7 +54,7 @@ pub fn extremes(intervals: &[usize], least: &[f64], evaluate: impl Fn(&[Vec<f64>
         let beyond = |index: usize| {
             let range = &found[index].range;
             let beyond = lines[index].1.iter().map(|&value| range.distance(value)).fold(0.0, f64::max);
-            beyond > least[index].max(BEYOND * range.width())
+            beyond > least[index].max(TUNING.beyond_range * range.width())
         };
         let doubled: Vec<usize> = intervals.iter().map(|count| 2 * count).collect();
         if (0..found.len()).any(beyond) && has_room(&doubled) {
@@ -91,7 +68,7 @@ pub fn extremes(intervals: &[usize], least: &[f64], evaluate: impl Fn(&[Vec<f64>
 
 fn has_room(intervals: &[usize]) -> bool {
     let points = intervals.iter().fold(1_usize, |points, count| points.saturating_mul(count + 1));
-    points <= MOST_POINTS[intervals.len().clamp(1, MOST_POINTS.len()) - 1]
+    points <= TUNING.lattice_points[intervals.len().clamp(1, TUNING.lattice_points.len()) - 1]
 }
 
 /// Intervals of a lattice that is finer along the axes along which some function is not resolved, as far as there is
@@ -107,7 +84,7 @@ fn finer(lattice: &Lattice, intervals: &[usize], lines: &[(&[f64], &[f64])], lea
         }
     }
     let mut finer = intervals.to_vec();
-    let mut axes: Vec<usize> = (0..intervals.len()).filter(|&axis| worst[axis] > COARSE).collect();
+    let mut axes: Vec<usize> = (0..intervals.len()).filter(|&axis| worst[axis] > TUNING.coarse).collect();
     axes.sort_by(|&a, &b| worst[b].total_cmp(&worst[a]));
     for axis in axes {
         finer[axis] *= 2;
@@ -132,9 +109,9 @@ pub fn extremes_from(known: &[Extent], evaluate: impl Fn(&[Vec<f64>]) -> Vec<f64
 fn search_near(known: &[Extent], corners_stay: bool, evaluate: impl Fn(&[Vec<f64>]) -> Vec<f64>) -> Vec<Extent> {
     let near = |(output, extent): (usize, &Extent)| {
         let width = extent.range.width();
-        let settled = SETTLED * width;
+        let settled = TUNING.settled_end * width;
         let end = |end: usize| {
-            let limits = [settled, LEFT * width];
+            let limits = [settled, TUNING.left_candidate * width];
             let near = End::near(output, &extent.places[end], &extent.spacing[end], SIGNS[end], limits);
             if corners_stay && extent.places[end].iter().all(|xi| xi.abs() == 1.0) {
                 let best = [extent.range.lower, extent.range.upper][end];
@@ -164,7 +141,7 @@ struct Search {
 /// Searches until all ends are found, or cannot become the best by what matters.
 fn climb(ends: &mut [&mut End], evaluate: &impl Fn(&[Vec<f64>]) -> Vec<f64>) {
     let mut tops: FxHashMap<(usize, bool), f64> = FxHashMap::default();
-    for _ in 0..ROUNDS {
+    for _ in 0..TUNING.steps_to_end {
         let searched: Vec<usize> = (0..ends.len()).filter(|&end| !ends[end].found).collect();
         let (mut points, mut firsts) = (Vec::new(), Vec::with_capacity(searched.len() + 1));
         for &end in &searched {
@@ -194,9 +171,9 @@ impl Search {
     /// From the values of function number `output`, for which differences of `least` do not matter, on a lattice.
     fn new(output: usize, least: f64, lattice: &Lattice, values: &[f64]) -> Self {
         let range = Range::of(values);
-        let settled = (SETTLED * range.width()).max(SETTLED_OF_LEAST * least);
+        let settled = (TUNING.settled_end * range.width()).max(TUNING.settled_of_least * least);
         let mut search = Self { ends: Vec::new(), output, settled, omitted: [Vec::new(), Vec::new()] };
-        let limits = [settled, settled.max(LEFT * range.width())];
+        let limits = [settled, settled.max(TUNING.left_candidate * range.width())];
         let end =
             |index: usize, sign: f64| End::near(output, &lattice.point(index), &lattice.spacing(index), sign, limits);
         for (sign, omitted) in SIGNS.into_iter().zip(&mut search.omitted) {
@@ -210,8 +187,8 @@ impl Search {
             peaks.retain(|&(_, height)| height >= best);
             let is_best = |index: usize| sign * values[index] == best;
             peaks.sort_by(|a, b| is_best(b.0).cmp(&is_best(a.0)).then(b.1.total_cmp(&a.1)).then(a.0.cmp(&b.0)));
-            search.ends.extend(peaks.iter().take(CANDIDATES).map(|peak| end(peak.0, sign)));
-            omitted.extend(peaks.into_iter().skip(CANDIDATES).rev());
+            search.ends.extend(peaks.iter().take(TUNING.candidates).map(|peak| end(peak.0, sign)));
+            omitted.extend(peaks.into_iter().skip(TUNING.candidates).rev());
         }
         search
     }
@@ -225,12 +202,12 @@ impl Search {
     /// Takes up more local extremes where one that was left may reach beyond the best by what matters. Whether it did.
     fn refine_more(&mut self, lattice: &Lattice) -> bool {
         let [below, above] = SIGNS.map(|sign| self.best(sign));
-        let matters = self.settled.max(LEFT * (below + above));
+        let matters = self.settled.max(TUNING.left_candidate * (below + above));
         let mut more = false;
         for (index, best) in [below, above].into_iter().enumerate() {
             let left = &mut self.omitted[index];
             if left.last().is_some_and(|&(_, height)| height > best + matters) {
-                let taken = left.split_off(left.len().saturating_sub(CANDIDATES));
+                let taken = left.split_off(left.len().saturating_sub(TUNING.candidates));
                 let sign = SIGNS[index];
                 let end = |(at, _): (usize, f64)| {
                     End::near(self.output, &lattice.point(at), &lattice.spacing(at), sign, [self.settled, matters])
@@ -294,7 +271,7 @@ struct End {
 impl End {
     /// Not far from a place, with neighbours at these distances.
     fn near(output: usize, xi: &[f64], spacing: &[f64], sign: f64, [settled, matters]: [f64; 2]) -> Self {
-        let spacing: Vec<f64> = spacing.iter().map(|spacing| spacing.min(NEAR)).collect();
+        let spacing: Vec<f64> = spacing.iter().map(|spacing| spacing.min(TUNING.near_extreme)).collect();
         let around = Peak::new(xi.to_vec(), spacing.clone());
         let best = -sign * f64::INFINITY;
         let (xi, best_xi) = (xi.to_vec(), xi.to_vec());
@@ -327,7 +304,7 @@ impl End {
 
     /// How high it may become, if each round that is left brought what the last one did.
     fn promise(&self) -> f64 {
-        self.height() + ROUNDS as f64 * self.gap
+        self.height() + TUNING.steps_to_end as f64 * self.gap
     }
 
     /// Leaves it where it cannot become better than the best by what matters.
@@ -361,9 +338,9 @@ impl End {
             // Nothing better around the best, or the quadratic led away from it.
             self.gap = 0.0;
             let vertex = self.around.vertex(&values[..values.len() - 1], self.sign);
-            let stays = vertex.iter().zip(&self.best_xi).all(|(vertex, best)| (vertex - best).abs() <= STAYS);
+            let stays = vertex.iter().zip(&self.best_xi).all(|(vertex, best)| (vertex - best).abs() <= TUNING.stays);
             // Neighbours so near show nothing more, and those that are not numbers do not either.
-            let is_last = self.around.is_within(FINEST) || values.iter().any(|value| value.is_nan());
+            let is_last = self.around.is_within(TUNING.finest) || values.iter().any(|value| value.is_nan());
             self.found = stays || (self.is_near && is_last);
             self.is_near = true;
             self.xi = if is_last { self.best_xi.clone() } else { vertex };

@@ -8,19 +8,7 @@ use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 use super::sparse_basis::SparseBasis;
 use super::sparse_grid::SparseGrid;
-
-/// Most terms: the work grows with their cube.
-const MOST_TERMS: usize = 1000;
-
-/// Equations for each term, at least: with two, what the terms lack went into products by tens of their size.
-const EQUATIONS_A_TERM: usize = 4;
-
-/// Weight of a derivative beside that of a value: terms of second degree have derivatives of at most 4.
-const WEIGHT: f64 = 0.5;
-
-/// Added to the diagonal of the normal equations, as a share of its largest entry: terms that samples do not tell
-/// apart share the response.
-const RIDGE: f64 = 1e-10;
+use super::tuning::TUNING;
 
 /// A term: the product of Chebyshev polynomials of these degrees.
 #[derive(Clone, Copy, Debug)]
@@ -105,7 +93,7 @@ impl GradientFit {
     /// terms of first and second degree.
     pub fn new(points: Vec<Vec<f64>>, functions: &[Derivatives<'_>]) -> Option<Self> {
         let k = points.first()?.len();
-        let room = (points.len() * (k + 1) / EQUATIONS_A_TERM).min(MOST_TERMS).checked_sub(2 * k + 1)?;
+        let room = (points.len() * (k + 1) / TUNING.equations_a_term).min(TUNING.most_terms).checked_sub(2 * k + 1)?;
         let mut products = products(&points, functions);
         products.truncate(room);
         let products = products.into_iter().map(|(a, b)| Term::Product(a, b));
@@ -115,12 +103,13 @@ impl GradientFit {
         for (number, point) in points.iter().enumerate() {
             for (column, term) in terms.iter().enumerate() {
                 matrix[(number * (k + 1), column)] = term.value(point);
-                term.slopes(point)
-                    .for_each(|(axis, slope)| matrix[(number * (k + 1) + 1 + axis, column)] = WEIGHT * slope);
+                term.slopes(point).for_each(|(axis, slope)| {
+                    matrix[(number * (k + 1) + 1 + axis, column)] = TUNING.weight_of_derivative * slope
+                });
             }
         }
         let mut normal = matrix.tr_mul(&matrix);
-        let ridge = RIDGE * normal.diagonal().max();
+        let ridge = TUNING.ridge * normal.diagonal().max();
         (0..terms.len()).for_each(|term| normal[(term, term)] += ridge);
         let basis = SparseBasis::new(&grid(k, &terms));
         Some(Self { normal: Cholesky::new(normal)?, terms, basis, points })
@@ -137,7 +126,7 @@ impl GradientFit {
         for (point, (value, slopes)) in self.points.iter().zip(samples) {
             for (own, term) in projected.iter_mut().zip(&self.terms) {
                 let along: f64 = term.slopes(point).map(|(axis, slope)| slope * slopes[axis]).sum();
-                *own += term.value(point) * value + WEIGHT * WEIGHT * along;
+                *own += term.value(point) * value + TUNING.weight_of_derivative * TUNING.weight_of_derivative * along;
             }
         }
         self.normal.solve(&projected).data.into()
@@ -151,7 +140,6 @@ impl GradientFit {
     /// A point of the box where `sign` times a polynomial has a local maximum, from `start`: it goes to the best along
     /// each axis in turn.
     pub fn maximum(&self, coefficients: &[f64], sign: f64, start: &[f64]) -> Vec<f64> {
-        const SWEEPS: usize = 30;
         let k = start.len();
         let (mut linear, mut bend) = (vec![0.0; k], vec![0.0; k]);
         let mut products: Vec<Vec<(usize, f64)>> = vec![Vec::new(); k];
@@ -168,7 +156,7 @@ impl GradientFit {
             }
         }
         let mut point = start.to_vec();
-        for _ in 0..SWEEPS {
+        for _ in 0..TUNING.sweeps {
             let mut moved = 0.0_f64;
             for axis in 0..k {
                 let at_middle =

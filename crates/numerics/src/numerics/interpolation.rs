@@ -1,11 +1,6 @@
 //! Values between output rows: a polynomial in time through the nearest rows.
 
-/// Rows of the polynomial, and of the coarser one that tells its error.
-const ROWS: usize = 6;
-const COARSE: usize = 4;
-
-/// Nearer than this share of a row's distance is in the row.
-const IN_ROW: f64 = 1e-9;
+use super::tuning::TUNING;
 
 /// A value at a time, as a sum over rows.
 #[derive(Clone, Debug)]
@@ -22,15 +17,15 @@ impl Interpolation {
         let next = times.partition_point(|own| *own < time);
         let is_near = |row: usize| {
             let step = if times.len() > 1 { times[1] - times[0] } else { 1.0 };
-            (times[row] - time).abs() <= IN_ROW * step
+            (times[row] - time).abs() <= TUNING.in_row * step
         };
         let exact = [next, next.saturating_sub(1)].into_iter().find(|&row| row < times.len() && is_near(row));
         if let Some(row) = exact {
             return Some(Self { fine: vec![(row, 1.0)], coarse: Vec::new() });
         }
         (next < times.len()).then(|| Self {
-            fine: row_weights(times, time, next, ROWS).collect(),
-            coarse: row_weights(times, time, next, COARSE).collect(),
+            fine: row_weights(times, time, next, TUNING.rows_of_interpolation).collect(),
+            coarse: row_weights(times, time, next, TUNING.rows_of_coarser).collect(),
         })
     }
 }

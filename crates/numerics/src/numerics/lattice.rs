@@ -7,9 +7,7 @@ use std::f64::consts::PI;
 
 use super::samples::TensorGrid;
 use super::tensor::cos_pi;
-
-/// Least spacing over that in the middle of the box.
-const AT_FACE: f64 = 0.3;
+use super::tuning::TUNING;
 
 /// The points, with Nᵢ intervals along each axis.
 #[derive(Clone, Debug)]
@@ -45,7 +43,7 @@ impl Lattice {
             let points = &self.axes[axis];
             let before = at.checked_sub(1).map_or(0.0, |before| points[at] - points[before]);
             let after = points.get(at + 1).map_or(0.0, |after| after - points[at]);
-            before.max(after).max(AT_FACE * PI / self.intervals[axis] as f64)
+            before.max(after).max(TUNING.at_face * PI / self.intervals[axis] as f64)
         };
         self.indices(index).enumerate().map(|(axis, at)| of_axis(axis, at)).collect()
     }

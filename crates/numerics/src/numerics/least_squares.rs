@@ -1,12 +1,7 @@
 //! Linear least squares of many right-hand sides, with the errors at samples that are left out.
 
+use super::tuning::TUNING;
 use nalgebra::{DMatrix, DVector};
-
-/// Diagonal entries of R below this share of the largest are zero.
-const RANK: f64 = 1e-10;
-
-/// A sample with this leverage or more is met by any fit, which says nothing of a fit without it.
-const MOST_LEVERAGE: f64 = 1.0 - 1e-9;
 
 /// The factorisation of a matrix whose rows are the values of all terms at a sample.
 #[derive(Clone, Debug)]
@@ -39,7 +34,7 @@ impl LeastSquares {
         let (q, r) = (qr.q(), qr.r());
         let diagonal = r.diagonal().abs();
         let leverages = q.row_iter().map(|row| row.norm_squared()).collect();
-        (diagonal.min() > RANK * diagonal.max()).then_some(Self { q, r, scales, weights, leverages })
+        (diagonal.min() > TUNING.zero_diagonal * diagonal.max()).then_some(Self { q, r, scales, weights, leverages })
     }
 
     /// Square of how far an error of one in every sample may move the fit at a point with these values of the terms; of
@@ -59,7 +54,11 @@ impl LeastSquares {
         let residuals = &weighted - &self.q * &projected;
         let left_out = residuals.iter().enumerate().map(|(sample, residual)| {
             let leverage = self.leverages[sample];
-            if leverage < MOST_LEVERAGE { residual / (1.0 - leverage) / self.weights[sample] } else { f64::INFINITY }
+            if leverage < TUNING.most_leverage {
+                residual / (1.0 - leverage) / self.weights[sample]
+            } else {
+                f64::INFINITY
+            }
         });
         Some((solved.iter().zip(&self.scales).map(|(value, scale)| value * scale).collect(), left_out.collect()))
     }

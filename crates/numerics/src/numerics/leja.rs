@@ -12,9 +12,7 @@
 use std::sync::OnceLock;
 
 use super::tensor::{Matrix, cos_pi};
-
-/// Highest level, which is a degree.
-pub(super) const MAX_LEVEL: u8 = 128;
+use super::tuning::TUNING;
 
 /// The node that a level adds.
 pub(super) fn node(level: u8) -> f64 {
@@ -25,7 +23,7 @@ pub(super) fn node(level: u8) -> f64 {
 fn sequence() -> Vec<f64> {
     let mut nodes = vec![0.0, 1.0, -1.0];
     let mut intervals = 4;
-    while nodes.len() <= usize::from(MAX_LEVEL) {
+    while nodes.len() <= usize::from(TUNING.max_level) {
         let mut new: Vec<f64> = (0..intervals / 2).map(|j| cos_pi(2 * j + 1, intervals)).collect();
         while !new.is_empty() {
             let spread = |x: &f64| nodes.iter().map(|node| (x - node).abs()).product::<f64>();
@@ -51,7 +49,8 @@ pub(super) struct Level {
 impl Level {
     /// That of a level from 1 on, computed once.
     pub fn of(level: u8) -> &'static Self {
-        static LEVELS: [OnceLock<Level>; MAX_LEVEL as usize + 1] = [const { OnceLock::new() }; MAX_LEVEL as usize + 1];
+        static LEVELS: [OnceLock<Level>; TUNING.max_level as usize + 1] =
+            [const { OnceLock::new() }; TUNING.max_level as usize + 1];
         LEVELS[usize::from(level)].get_or_init(|| Self::new(level))
     }
 
@@ -90,7 +89,7 @@ mod tests {
 
     #[test]
     fn cardinal_polynomials_are_one_at_their_node_and_zero_at_those_before() {
-        for level in 1..=MAX_LEVEL {
+        for level in 1..=TUNING.max_level {
             let c = &Level::of(level).cardinal;
             for other in 0..=level {
                 let value = clenshaw(c, node(other));

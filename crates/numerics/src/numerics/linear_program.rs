@@ -2,17 +2,7 @@
 //! by the simplex method on a dictionary (V. Chvátal, Linear Programming, Freeman 1983, ch. 2 and 3).
 
 use super::cheapest::Linear;
-
-/// What a violated limit costs, in multiples of the goals' change over the box.
-const PENALTY: f64 = 1e4;
-
-/// Pivots by the largest coefficient, for each row and column; those after them are by Bland's rule, which never
-/// circles.
-const LARGEST_FIRST: usize = 20;
-const MOST: usize = 200;
-
-/// Coefficients below this are rounding.
-const ROUNDING: f64 = 1e-11;
+use super::tuning::TUNING;
 
 /// The step s, `least` ≤ s ≤ `most`, at which the least of the `goals` is largest while all `limits` are not negative;
 /// where they cannot be, the largest violation, relative to what the limit changes over the box, is as small as can be.
@@ -29,7 +19,7 @@ pub fn best_step(goals: &[Linear], limits: &[Linear], least: &[f64], most: &[f64
     let violation = limits.iter().map(|own| -own.corner / own.change()).fold(0.0, f64::max);
     let mut dictionary = Dictionary::new(k + 2);
     dictionary.gains[k] = 1.0;
-    dictionary.gains[k + 1] = PENALTY;
+    dictionary.gains[k + 1] = TUNING.penalty;
     for own in &goals {
         let mut row: Vec<f64> = own.slopes.iter().map(|slope| -slope / scale).collect();
         row.extend([1.0, 0.0]);
@@ -101,8 +91,8 @@ impl Dictionary {
     /// x at the largest sum of gains.
     fn maximised(mut self) -> Vec<f64> {
         let size = self.rows.len() + self.columns.len();
-        for pivot in 0..MOST * size {
-            let Some(column) = self.entering(pivot < LARGEST_FIRST * size) else { break };
+        for pivot in 0..TUNING.most_pivots * size {
+            let Some(column) = self.entering(pivot < TUNING.pivots_by_largest * size) else { break };
             // Without a row that limits it, a gain would have no end: every unknown has a row of its own.
             let Some(row) = self.leaving(column) else { break };
             self.exchange(row, column);
@@ -115,7 +105,7 @@ impl Dictionary {
     }
 
     fn entering(&self, largest: bool) -> Option<usize> {
-        let gaining = (0..self.gains.len()).filter(|&column| self.gains[column] > ROUNDING);
+        let gaining = (0..self.gains.len()).filter(|&column| self.gains[column] > TUNING.rounding_of_coefficients);
         match largest {
             true => gaining.max_by(|&a, &b| self.gains[a].total_cmp(&self.gains[b])),
             false => gaining.min_by_key(|&column| self.columns[column]),
@@ -123,7 +113,7 @@ impl Dictionary {
     }
 
     fn leaving(&self, column: usize) -> Option<usize> {
-        let limiting = (0..self.rows.len()).filter(|&row| self.rows[row][column] > ROUNDING);
+        let limiting = (0..self.rows.len()).filter(|&row| self.rows[row][column] > TUNING.rounding_of_coefficients);
         let reach = |row: usize| self.limits[row] / self.rows[row][column];
         limiting.min_by(|&a, &b| reach(a).total_cmp(&reach(b)).then(self.basis[a].cmp(&self.basis[b])))
     }

@@ -64,6 +64,7 @@ mod surrogate;
 mod taylor;
 mod tensor;
 mod time_shift;
+pub(crate) mod tuning;
 
 pub use bisection::bisected;
 pub use brink::to_brinks;
@@ -74,7 +75,8 @@ pub use decay::truncation;
 pub use design::{Design, MOST_AXES};
 pub use domain::{ParameterBox, Sample};
 pub use error::{
-    BandError, SAFETY_OF_SURROGATE, carries, largest, step_error, surrogate_error, time_error, time_error_certified,
+    BandError, SAFETY_OF_STEPS, SAFETY_OF_SURROGATE, carries, largest, step_error, surrogate_error, time_error,
+    time_error_certified,
 };
 pub use extent::Extent;
 pub use extremes::{extremes, extremes_from, extremes_near};
@@ -103,3 +105,4 @@ pub use spectrum::{Bin, Spectrum};
 pub use surrogate::{Surrogate, SurrogateWork};
 pub use taylor::TaylorRange;
 pub use time_shift::{TimeShift, Turning};
+pub use tuning::tuning;

@@ -7,21 +7,13 @@
 use symdiff::math;
 
 use super::envelope::envelope;
+use super::tuning::TUNING;
 
 /// Order of the scheme. Where steps are not quite short enough, it looks a little lower.
 const SCHEME: f64 = 2.0;
 
 /// Order of a step in which the equations switch.
 const OF_A_SWITCH: f64 = 1.0;
-
-/// Orders below this are not that of the scheme at all.
-const LEAST_ORDER: f64 = 1.5;
-
-/// Below this order nothing converges, and the difference of two steps tells nothing of their error.
-const NO_ORDER: f64 = 0.25;
-
-/// Where the order is not that of the scheme, the largest difference counts so many times.
-const OF_DIFFERENCES: f64 = 1.5;
 
 /// Differences of an output at some samples in one row.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -68,11 +60,11 @@ pub fn corrections(rows: &[Differences], ratio: f64, switched_from: Option<usize
         if order.is_nan() || order >= SCHEME {
             return Correction::NONE;
         }
-        let factor = (1.0 - 0.25) / (1.0 - math::pow(0.5, order.max(NO_ORDER)));
-        let disagree = order < LEAST_ORDER;
+        let factor = (1.0 - 0.25) / (1.0 - math::pow(0.5, order.max(TUNING.no_order)));
+        let disagree = order < TUNING.least_order;
         Correction {
             factor,
-            least: if disagree { OF_DIFFERENCES * halved[row].max(finer[row]).max(all[row]) } else { 0.0 },
+            least: if disagree { TUNING.of_differences * halved[row].max(finer[row]).max(all[row]) } else { 0.0 },
         }
     };
     (0..rows.len()).map(of_row).collect()
@@ -123,7 +115,7 @@ mod tests {
         assert!((first.of(2.0 / 3.0) - 1.0).abs() < 1e-6, "{first:?}");
         // No convergence at all.
         let wrong_alike = Differences { halved: 1e-6, finer: 0.3, all: 0.3 };
-        assert_eq!(corrections(&[wrong_alike; 2], 0.37, None)[0].of(1e-6), OF_DIFFERENCES * 0.3);
+        assert_eq!(corrections(&[wrong_alike; 2], 0.37, None)[0].of(1e-6), TUNING.of_differences * 0.3);
     }
 
     #[test]

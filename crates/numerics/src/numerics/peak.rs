@@ -1,22 +1,8 @@
 //! From the best point of a grid to the peak beside it: by the quadratic through a point and its neighbours, as far as
 //! those reach.
 
+use super::tuning::TUNING;
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
-
-/// How much nearer the next neighbours are.
-const NEARER: f64 = 0.25;
-/// How much further, and how far at most.
-const FURTHER: f64 = 2.0;
-const FURTHEST: f64 = 0.5;
-
-/// For so many axes all faces are looked at.
-const MOST_FACES: usize = 3;
-/// Most changes of faces for each axis.
-const CHANGES: usize = 8;
-/// What a direction that bends upwards is shifted by at first, as a share of the bends.
-const SHIFT: f64 = 1e-3;
-/// What a step gains less than, as a share of all gain, is none.
-const SETTLED: f64 = 1e-12;
 
 /// A point near a function's peak, and its neighbours within [−1, 1]^k.
 #[derive(Clone, Debug, PartialEq)]
@@ -64,13 +50,16 @@ impl Peak {
         if !further {
             return self.nearer(xi);
         }
-        Self::new(xi.to_vec(), self.spacing.iter().map(|spacing| (FURTHER * spacing).min(FURTHEST)).collect())
+        Self::new(
+            xi.to_vec(),
+            self.spacing.iter().map(|spacing| (TUNING.further * spacing).min(TUNING.furthest)).collect(),
+        )
     }
 
     /// Around a point, with nearer neighbours.
     #[must_use]
     pub fn nearer(&self, xi: &[f64]) -> Self {
-        Self::new(xi.to_vec(), self.spacing.iter().map(|spacing| NEARER * spacing).collect())
+        Self::new(xi.to_vec(), self.spacing.iter().map(|spacing| TUNING.nearer * spacing).collect())
     }
 
     /// Whether its neighbours are no further than this along every axis.
@@ -105,7 +94,7 @@ impl Peak {
 
 /// Where sᵀd − ½ dᵀBd is largest for |dᵢ| ≤ 1.
 fn best_step(slope: &DVector<f64>, bend: &DMatrix<f64>) -> Vec<f64> {
-    if slope.len() <= MOST_FACES { best_of_faces(slope, bend) } else { along_faces(slope, bend) }
+    if slope.len() <= TUNING.most_faces { best_of_faces(slope, bend) } else { along_faces(slope, bend) }
 }
 
 /// Looks inside the box, and inside all of its faces, edges, … with a peak there.
@@ -139,13 +128,13 @@ fn along_faces(slope: &DVector<f64>, bend: &DMatrix<f64>) -> Vec<f64> {
     let k = slope.len();
     let mut step = DVector::zeros(k);
     let mut held = vec![false; k];
-    for _ in 0..CHANGES * k {
+    for _ in 0..TUNING.changes_of_faces * k {
         let pull = slope - bend * &step;
         let free: Vec<usize> = (0..k).filter(|&axis| !held[axis]).collect();
         let way = way_up(&free, &pull, bend);
         let gain = way.dot(&pull);
         // Written so that NaN ends it too.
-        let rises = gain > SETTLED * slope.dot(&step).abs();
+        let rises = gain > TUNING.settled_gain * slope.dot(&step).abs();
         if rises {
             let curvature = way.dot(&(bend * &way));
             let reach = |axis: usize| (way[axis].signum() - step[axis]) / way[axis];
@@ -176,7 +165,7 @@ fn way_up(free: &[usize], pull: &DVector<f64>, bend: &DMatrix<f64>) -> DVector<f
         let shifted = &own + DMatrix::identity(free.len(), free.len()) * shift;
         match shifted.cholesky() {
             Some(peak) => break peak.solve(&up),
-            None if shift < own.amax() * free.len() as f64 => shift = (4.0 * shift).max(SHIFT * own.amax()),
+            None if shift < own.amax() * free.len() as f64 => shift = (4.0 * shift).max(TUNING.shift * own.amax()),
             None => break up,
         }
     };

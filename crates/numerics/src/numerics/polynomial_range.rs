@@ -24,6 +24,7 @@ use std::f64::consts::FRAC_PI_2;
 use super::bernstein::Bernstein;
 use super::range::{Enclosed, Range};
 use super::tensor::{Matrix, Separable, Work, cos_pi};
+use super::tuning::TUNING;
 
 /// How the range of a polynomial is found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,21 +35,13 @@ pub enum RangeKind {
     Tight,
 }
 
-/// Grid intervals for each degree.
-const DENSITY: usize = 16;
-/// Fewest intervals for one, two and three parameters: what makes the margins of low degrees small too, as far as it
-/// costs little. For more parameters there is no grid.
-const MIN_INTERVALS: [usize; 3] = [512, 128, 64];
-/// Most points of a grid: three parameters of degree 6.
-const MAX_GRID_POINTS: usize = 1 << 20;
-
 /// Grid intervals along each axis; `None` where the grid would be too large.
 fn intervals(orders: &[usize]) -> Option<Vec<usize>> {
     let active = orders.iter().filter(|&&n| n > 0).count();
-    let least = if active == 0 { 1 } else { *MIN_INTERVALS.get(active - 1)? };
-    let counts: Vec<usize> = orders.iter().map(|&n| if n == 0 { 0 } else { least.max(DENSITY * n) }).collect();
+    let least = if active == 0 { 1 } else { *TUNING.min_intervals.get(active - 1)? };
+    let counts: Vec<usize> = orders.iter().map(|&n| if n == 0 { 0 } else { least.max(TUNING.density * n) }).collect();
     let points = counts.iter().fold(1_usize, |points, count| points.saturating_mul(count + 1));
-    (points <= MAX_GRID_POINTS).then_some(counts)
+    (points <= TUNING.max_grid_points).then_some(counts)
 }
 
 /// Bounds polynomials of one shape; all that does not depend on the coefficients is computed once. Clone it for each

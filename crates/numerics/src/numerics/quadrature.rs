@@ -4,6 +4,8 @@
 //! Nodes and weights of 7 and 15 points: R. Piessens, E. de Doncker-Kapenga, C. W. Überhuber & D. K. Kahaner,
 //! QUADPACK (1983), `qk15`.
 
+use super::tuning::TUNING;
+
 /// Nodes of the 15 points from 1 to 0; every second one, from the second on, is Gauss's.
 const NODES: [f64; 8] = [
     0.991_455_371_120_812_6,
@@ -31,9 +33,6 @@ const WEIGHTS: [f64; 8] = [
 /// Gauss's weights.
 const GAUSS: [f64; 4] =
     [0.129_484_966_168_869_7, 0.279_705_391_489_276_64, 0.381_830_050_505_118_9, 0.417_959_183_673_469_4];
-
-/// Most intervals.
-const MOST: usize = 4000;
 
 /// One interval: Kronrod's integrals, and their distance from Gauss's.
 struct Piece {
@@ -85,7 +84,7 @@ pub fn integrals(
         let is_coarse =
             |piece: &Piece| piece.errors.iter().zip(&totals).any(|(error, total)| *error > share * relative * total);
         let (coarse, fine): (Vec<Piece>, Vec<Piece>) = pieces.into_iter().partition(is_coarse);
-        if fine.len() + 2 * coarse.len() > MOST {
+        if fine.len() + 2 * coarse.len() > TUNING.most_intervals {
             return None;
         }
         pieces = fine;

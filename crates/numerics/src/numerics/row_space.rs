@@ -3,8 +3,7 @@
 //! Modified Gram–Schmidt with pivoting, each vector orthogonalised twice ("twice is enough": Giraud, Langou, Rozložník
 //! & van den Eshof, Numer. Math. 101 (2005) 87). Plain loops, so that results are the same bits on every processor.
 
-/// Rows of which less than this share is left are dependent.
-const DEPENDENT: f64 = 1e-9;
+use super::tuning::TUNING;
 
 /// A = L B for the independent rows of A, with orthonormal rows of B, and an orthonormal basis of what A maps to zero.
 #[derive(Clone, Debug, Default)]
@@ -37,7 +36,7 @@ impl RowSpace {
             orthogonalise(&mut vector, &space.basis, &mut part);
             let size = norm(&vector);
             // NaN is dependent.
-            if size.is_nan() || size <= DEPENDENT * sizes[row] || space.basis.len() == n {
+            if size.is_nan() || size <= TUNING.dependent_row * sizes[row] || space.basis.len() == n {
                 break;
             }
             vector.iter_mut().for_each(|entry| *entry /= size);

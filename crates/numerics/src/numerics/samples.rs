@@ -3,11 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::tensor::cos_pi;
-
-/// Up to so many axes all combinations of middle and ends are simulated;
-const FEW: usize = 3;
-/// of more, so many corners.
-const CORNERS: usize = 16;
+use super::tuning::TUNING;
 
 /// All combinations of one coordinate from each axis. Samples are numbered with the last axis fastest and made one at
 /// a time, so that a plan of any size can be split by ranges of numbers.
@@ -81,9 +77,6 @@ pub fn corners(k: usize, most: usize) -> Vec<Vec<f64>> {
     (0..if all { 1 << k } else { most }).map(|index| (0..k).map(|axis| sign(index, axis)).collect()).collect()
 }
 
-/// Points inside the box at which a surrogate is held against simulations that it was not made from.
-const HELD_OUT: usize = 8;
-
 /// So many points spread evenly over the inside of the box (the additive recurrence of Kronecker).
 pub fn spread(k: usize, count: usize) -> Vec<Vec<f64>> {
     // Roberts' generalisation of the golden ratio: the root of x^(k+1) = x + 1.
@@ -99,21 +92,21 @@ pub fn spread(k: usize, count: usize) -> Vec<Vec<f64>> {
 /// held out, which are two more than the degree: a polynomial that wiggles as often as it can shows at one of them.
 pub fn validation(k: usize, degree: usize) -> Vec<Vec<f64>> {
     let mut points = step_validation(k);
-    points.extend(spread(k, if k == 0 { 0 } else { HELD_OUT.max(k).max(degree + 2) }));
+    points.extend(spread(k, if k == 0 { 0 } else { TUNING.held_out.max(k).max(degree + 2) }));
     points
 }
 
 /// Points at which steps are halved, and a surrogate is held against the simulation too: centre, faces and corners, all
 /// 3^k of them for up to three axes, else the centre, both ends of every axis and 16 corners.
 pub fn step_validation(k: usize) -> Vec<Vec<f64>> {
-    if k <= FEW {
+    if k <= TUNING.few_axes {
         let lattice = TensorGrid::full_factorial(&vec![3; k]);
         return (0..lattice.len()).map(|index| lattice.sample(index)).collect();
     }
     let on_axis = |axis: usize, xi: f64| (0..k).map(|other| if other == axis { xi } else { 0.0 }).collect();
     let mut points = vec![vec![0.0; k]];
     points.extend((0..k).flat_map(|axis| [on_axis(axis, -1.0), on_axis(axis, 1.0)]));
-    points.extend(corners(k, CORNERS));
+    points.extend(corners(k, TUNING.most_corners));
     points
 }
 
@@ -127,7 +120,7 @@ pub fn corners_by_slopes<'v>(
     most: usize,
     functions: impl Iterator<Item = (f64, &'v [f64])>,
 ) -> Vec<Vec<f64>> {
-    if k <= FEW {
+    if k <= TUNING.few_axes {
         return Vec::new();
     }
     let mut reached: BTreeMap<Vec<bool>, f64> = BTreeMap::new();
@@ -143,7 +136,7 @@ pub fn corners_by_slopes<'v>(
             }
         }
     }
-    let known: BTreeSet<Vec<bool>> = corners(k, CORNERS).iter().map(|corner| signs(corner)).collect();
+    let known: BTreeSet<Vec<bool>> = corners(k, TUNING.most_corners).iter().map(|corner| signs(corner)).collect();
     let mut named: Vec<(Vec<bool>, f64)> = reached.into_iter().filter(|(corner, _)| !known.contains(corner)).collect();
     named.sort_by(|a, b| b.1.total_cmp(&a.1));
     named.truncate(most);
@@ -212,7 +205,7 @@ mod tests {
         };
         let functions = [at([1e-3, 1e-3, 1e-3, -1e-3, 0.0]), at([1.0, -2.0, 3.0, 4.0, 5.0]), vec![f64::NAN; 27]];
         let named = corners_by_slopes(5, 9, functions.iter().map(|values| (1.0, values.as_slice())));
-        let known = corners(5, CORNERS);
+        let known = corners(5, TUNING.most_corners);
         let wanted = [[-1.0, 1.0, -1.0, -1.0, -1.0], [1.0, -1.0, 1.0, 1.0, 1.0]];
         assert!(wanted.iter().all(|corner| named.contains(&corner.to_vec()) != known.contains(&corner.to_vec())));
         assert!(named.iter().all(|corner| !known.contains(corner)), "{named:?}");

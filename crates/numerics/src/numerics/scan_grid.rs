@@ -5,9 +5,7 @@ use std::ops::Range;
 
 use super::domain::{ParameterBox, Sample};
 use super::samples::TensorGrid;
-
-/// Most samples that are simulated at once.
-const LARGEST_SHARD: usize = 16384;
+use super::tuning::TUNING;
 
 /// The samples of a scan, in shards of consecutive ones.
 #[derive(Clone, Debug)]
@@ -19,14 +17,14 @@ pub struct ScanGrid {
 
 impl ScanGrid {
     /// Fewest samples of a shard, but for the last.
-    pub const LEAST_SHARD: usize = 2048;
+    pub const LEAST_SHARD: usize = TUNING.least_shard;
 
     /// With so many points along each axis, both ends included.
     pub fn new(points: &[usize]) -> Self {
         let grid = TensorGrid::full_factorial(points);
         // Slabs of the first axis stay together, so that neighbours do.
         let slab = grid.len() / points.first().copied().unwrap_or(1);
-        let shard = slab.saturating_mul(3).clamp(Self::LEAST_SHARD, LARGEST_SHARD);
+        let shard = slab.saturating_mul(3).clamp(Self::LEAST_SHARD, TUNING.largest_shard);
         Self { grid, points: points.to_vec(), shard }
     }
 

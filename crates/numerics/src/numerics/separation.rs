@@ -5,12 +5,7 @@
 //! at further points.
 
 use super::samples::spread;
-
-/// Points that a sum is tried at.
-const TRIED: usize = 4;
-/// A difference below this share of the values' range, and so many units of rounding of the largest of them, is none.
-const SHARE: f64 = 1e-10;
-const ROUNDING: f64 = 256.0 * f64::EPSILON;
+use super::tuning::TUNING;
 
 /// A function of k parameters as a sum over groups of them.
 #[derive(Clone, Debug, PartialEq)]
@@ -35,7 +30,7 @@ pub struct Separation {
 impl Separation {
     /// For k parameters.
     pub fn new(dimension: usize) -> Self {
-        let mut scattered = spread(dimension, 3 + TRIED);
+        let mut scattered = spread(dimension, 3 + TUNING.tried_points);
         let tried = scattered.split_off(3);
         let [anchor, a, b]: [Vec<f64>; 3] = std::array::from_fn(|index| scattered[index].clone());
         let moved = |moves: &[(usize, f64)]| {
@@ -72,7 +67,8 @@ impl Separation {
         if self.dimension < 2 || values.iter().any(|value| !value.is_finite()) {
             return together;
         }
-        let none = SHARE * (largest - least) + ROUNDING * least.abs().max(largest.abs());
+        let none =
+            TUNING.no_difference * (largest - least) + TUNING.rounding_of_difference * least.abs().max(largest.abs());
         let mut group: Vec<usize> = (0..self.dimension).collect();
         let single = |axis: usize, index: usize| values[1 + 2 * axis + index];
         let mut matters: Vec<bool> = (0..self.dimension)
@@ -108,7 +104,7 @@ impl Separation {
             })
         });
         let parts = evaluate(&parts.collect::<Vec<_>>());
-        let whole = &values[values.len() - TRIED..];
+        let whole = &values[values.len() - TUNING.tried_points..];
         let of_point = |(index, whole): (usize, &f64)| {
             let own = &parts[index * groups.len()..][..groups.len()];
             (own.iter().map(|part| part - values[0]).sum::<f64>() + values[0] - whole).abs()

@@ -4,9 +4,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use symdiff::{Vectorise, vectorised};
 
 use super::sparse_grid::SparseGrid;
-
-/// Lower degrees along an axis are too few to tell how fast coefficients fall.
-pub(super) const LEAST_DEGREE: usize = 6;
+use super::tuning::TUNING;
 
 /// Points or lines treated together.
 pub(super) const LANES: usize = 8;
@@ -193,7 +191,7 @@ fn is_tensor(orders: &[u8], terms: usize) -> bool {
 
 /// The indices just beyond some terms, each with its predecessors.
 fn front(degrees: &[u8], orders: &[u8], places: &FxHashMap<&[u8], u32>) -> Vec<Vec<Before>> {
-    let tells = |axis: usize| usize::from(orders[axis]) >= LEAST_DEGREE;
+    let tells = |axis: usize| usize::from(orders[axis]) >= TUNING.least_degree;
     let (mut seen, mut front) = (FxHashSet::default(), Vec::new());
     for (term, axis) in
         degrees.chunks_exact(orders.len()).flat_map(|term| (0..orders.len()).map(move |axis| (term, axis)))

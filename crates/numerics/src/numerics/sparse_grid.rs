@@ -4,7 +4,8 @@ use std::collections::BTreeSet;
 
 use rustc_hash::FxHashSet;
 
-use super::leja::{MAX_LEVEL, node};
+use super::leja::node;
+use super::tuning::TUNING;
 
 /// Nested nodes for a downward-closed set of *indices*: a level for each parameter, and with it every index that is
 /// nowhere higher. Each index brings one node and one term, the product of Chebyshev polynomials of its levels'
@@ -42,7 +43,7 @@ pub fn expected(levels: &[u8], back: u8, share: impl Fn(usize) -> f64, size: imp
 impl SparseGrid {
     /// The middle of the box alone, to grow up to `caps[i]` along axis i. Levels above 128 are never reached.
     pub fn new(caps: &[u8]) -> Self {
-        let caps: Vec<u8> = caps.iter().map(|&cap| cap.min(MAX_LEVEL)).collect();
+        let caps: Vec<u8> = caps.iter().map(|&cap| cap.min(TUNING.max_level)).collect();
         let mut grid = Self { levels: Vec::new(), known: FxHashSet::default(), caps };
         grid.add(&vec![0; grid.dimension()]);
         grid
@@ -51,8 +52,6 @@ impl SparseGrid {
     /// All indices whose levels, each as a share of its order, add up to one at most: of equal orders, all of that
     /// total degree. `None` if they are more than `most`.
     pub fn simplex(orders: &[usize], most: usize) -> Option<Self> {
-        /// Shares of a sum that is one may round to more.
-        const ROUNDING: f64 = 1e-9;
         let mut grid =
             Self::new(&orders.iter().map(|&order| u8::try_from(order).unwrap_or(u8::MAX)).collect::<Vec<_>>());
         let mut next = vec![0; orders.len()];
@@ -63,7 +62,7 @@ impl SparseGrid {
         while let Some(raised) = axis.checked_sub(1) {
             next[raised] += 1;
             next[raised + 1..].fill(0);
-            if next[raised] > grid.caps[raised] || share(&next) > 1.0 + ROUNDING {
+            if next[raised] > grid.caps[raised] || share(&next) > 1.0 + TUNING.rounding_of_shares {
                 next[raised] = 0;
                 axis = raised;
                 continue;

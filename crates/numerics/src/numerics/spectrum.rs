@@ -6,13 +6,7 @@
 use symdiff::math;
 
 use super::quadrature::integrals;
-
-/// Bins have equal factors in bands that are wider than this factor.
-const WIDE: f64 = 10.0;
-/// Points a bin at which the density is summed up, to divide the band.
-const POINTS: usize = 64;
-/// Relative error of variances of bins.
-const ACCURACY: f64 = 1e-10;
+use super::tuning::TUNING;
 
 /// A one-sided spectral density over its frequency ν, up to a factor.
 #[derive(Clone, Debug, PartialEq)]
@@ -88,15 +82,16 @@ impl Spectrum {
         let mut ends = vec![from];
         ends.extend(self.breaks().into_iter().filter(|own| from < *own && *own < to));
         ends.push(to);
-        let found = integrals(&ends, 1, ACCURACY, |frequency, values| values[0] = self.density(frequency));
+        let found =
+            integrals(&ends, 1, TUNING.accuracy_of_bins, |frequency, values| values[0] = self.density(frequency));
         found.map_or(f64::NAN, |found| found[0])
     }
 
     /// A band in so many bins: half of them evenly (by equal factors in a wide band), half by their variance.
     pub fn bins(&self, band: [f64; 2], count: usize) -> Vec<Bin> {
         let [from, to] = band;
-        let is_wide = from > 0.0 && to > WIDE * from;
-        let number = POINTS * count;
+        let is_wide = from > 0.0 && to > TUNING.wide_bin * from;
+        let number = TUNING.points_a_bin * count;
         let point = |index: usize| {
             let share = index as f64 / number as f64;
             if is_wide { from * math::pow(to / from, share) } else { from + (to - from) * share }

@@ -5,10 +5,7 @@ use symdiff::jet::Monomials;
 use super::polynomial_range::{PolynomialRange, RangeKind};
 use super::range::{Enclosed, Range, least, most};
 use super::tensor::{Matrix, Separable, Work};
-
-/// Most coefficients of the tensor in which the tight range is sought; beyond, the range is taken term by term, and how
-/// much too wide it is is unknown.
-const MAX_TENSOR: usize = 1 << 16;
+use super::tuning::TUNING;
 
 /// Bounds polynomials of total degree N in k variables, given by coefficients in the order of [`Monomials`], which is
 /// that of jets: Σ c_e ξ₁^e₁ … ξ_k^e_k.
@@ -38,7 +35,7 @@ impl TaylorRange {
         let monomials = Monomials::new(variables, order);
         let even = (0..monomials.len()).map(|r| monomials.exponents(r).iter().all(|e| e % 2 == 0)).collect();
         let size = (0..variables).fold(1_usize, |size, _| size.saturating_mul(order + 1));
-        let tensor = (size <= MAX_TENSOR).then(|| {
+        let tensor = (size <= TUNING.max_tensor).then(|| {
             let index = |r| monomials.exponents(r).iter().fold(0, |index, e| index * (order + 1) + e);
             Tensor {
                 indices: (0..monomials.len()).map(index).collect(),

@@ -5,13 +5,7 @@
 //! extreme over the parameters that is one over time too, v is zero.
 
 use super::error::{RICHARDSON, largest};
-
-/// Rows before and after the one that is looked at.
-const REACH: usize = 4;
-
-/// The variance of the velocity over these rows, relative to its mean square, from which on a shift can be told from an
-/// offset.
-const TURNS: f64 = 0.25;
+use super::tuning::TUNING;
 
 /// The steps' error of a coordinate.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,7 +30,7 @@ pub struct Turning {
 impl TimeShift {
     /// Rows that tell the shift in one of them.
     pub fn window(row: usize, rows: usize) -> std::ops::Range<usize> {
-        row.saturating_sub(REACH)..(row + REACH + 1).min(rows)
+        row.saturating_sub(TUNING.rows_of_shift)..(row + TUNING.rows_of_shift + 1).min(rows)
     }
 
     /// From every sample's coordinate in a window of rows; none where some sample does not turn in it, so that a shift
@@ -65,7 +59,7 @@ fn slope(errors: &[f64], sample: &[Turning]) -> Option<f64> {
     let apart = |at: &Turning| at.velocity - velocity;
     let variance = sample.iter().map(|at| apart(at) * apart(at)).sum::<f64>() / count;
     let covariance = errors.iter().zip(sample).map(|(of_row, at)| (of_row - error) * apart(at)).sum::<f64>() / count;
-    let turns = variance >= TURNS * (variance + velocity * velocity) && variance > 0.0;
+    let turns = variance >= TUNING.turns * (variance + velocity * velocity) && variance > 0.0;
     // NaN does not turn.
     (turns && covariance.is_finite()).then(|| covariance / variance)
 }

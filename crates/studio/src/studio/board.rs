@@ -2,12 +2,9 @@
 
 use std::collections::BTreeMap;
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
-use std::time::Duration;
 
+use super::tuning::TUNING;
 use serde_json::{Map, Value, json};
-
-/// How long a page waits for something new before it asks again.
-const PATIENCE: Duration = Duration::from_secs(20);
 
 #[derive(Default)]
 struct Notes {
@@ -47,7 +44,7 @@ impl Board {
         let notes = self.lock();
         let number = if number > notes.latest { 0 } else { number };
         let is_old = |notes: &mut Notes| notes.latest <= number && !notes.is_ended;
-        let waited = self.bell.wait_timeout_while(notes, PATIENCE, is_old);
+        let waited = self.bell.wait_timeout_while(notes, TUNING.patience_of_board, is_old);
         let (notes, _) = waited.unwrap_or_else(PoisonError::into_inner);
         let new = notes.topics.iter().filter(|(_, (own, _))| *own > number);
         let topics: Map<String, Value> = new.map(|(topic, (_, note))| ((*topic).to_owned(), note.clone())).collect();

@@ -2,26 +2,18 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use serde_json::{Value, json};
 
 use super::desk::{Current, Desk, Finished, Reading};
 use super::language::uri;
+use super::tuning::TUNING;
 use crate::export::{results_article, write_results};
 use crate::methods::{BoundsRequest, Chebyshev, Taylor};
 use crate::model::{Description, Opened, read_open};
 use crate::results::{Bounds, Provenance, Summary};
 use crate::study::{self, Options, RunError};
-
-/// Most uncertain parameters for which coarse bounds are polynomials through the corners of the box.
-const FEW: usize = 4;
-
-/// How long coarse bounds may take: later they are no news beside those that the model asks for.
-const COARSE: Duration = Duration::from_secs(10);
-
-/// Progress is told by this share.
-const SHARE: f64 = 0.01;
 
 /// A study of a series: each takes longer than the one before, and says more.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -54,7 +46,7 @@ impl Stage {
         model.statistics.asked = false;
         model.bounds = BoundsRequest { budget: description.bounds.budget, ..BoundsRequest::default() };
         match self {
-            Self::Coarse if k <= FEW => model.bounds.chebyshev = Some(Chebyshev::of_order(1, k)),
+            Self::Coarse if k <= TUNING.few_parameters => model.bounds.chebyshev = Some(Chebyshev::of_order(1, k)),
             Self::Coarse => model.bounds.taylor = Some(Taylor { order: 1, ..Taylor::default() }),
             // Without bounds there are no verdicts.
             _ => model.requirements.clear(),
@@ -167,13 +159,13 @@ fn stages(desk: &Desk, current: &Arc<Current>, reading: &Reading) {
 
 fn run(desk: &Desk, model: &Description, reading: &Reading, stage: Stage) -> Result<(Bounds, Summary), RunError> {
     let tell = |fraction: f64| {
-        let fraction = (fraction / SHARE).floor() * SHARE;
+        let fraction = (fraction / TUNING.share_of_progress).floor() * TUNING.share_of_progress;
         let note = json!({ "number": reading.change, "stage": stage.name(), "fraction": fraction });
         desk.board.put("progress", note);
     };
     tell(0.0);
     let begun = Instant::now();
-    let is_late = || stage == Stage::Coarse && begun.elapsed() > COARSE;
+    let is_late = || stage == Stage::Coarse && begun.elapsed() > TUNING.time_of_coarse;
     let interrupted = || desk.is_old(reading.change) || is_late();
     let options = Options {
         costly: reading.is_allowed,

@@ -2,24 +2,10 @@
 
 use std::io::{self, Read, Write};
 use std::net::{Shutdown, TcpStream};
-use std::time::Duration;
 
 use super::answer::Answer;
 use super::guard::Caller;
-
-/// Bytes and headers that the head of a request may have.
-const MOST_HEAD: usize = 16 << 10;
-const MOST_HEADERS: usize = 64;
-
-/// Bytes that a body may have: a text of the largest model.
-const MOST_BODY: usize = 64 << 20;
-
-/// How long the other end may be silent within a request.
-const SILENCE: Duration = Duration::from_secs(10);
-
-/// How long, and for how many bytes, an end waits for the other to close, so that the answer arrives.
-const LINGER: Duration = Duration::from_millis(500);
-const MOST_DROPPED: u64 = 1 << 20;
+use super::tuning::TUNING;
 
 /// The head of a request.
 #[derive(Debug, Default, PartialEq, Eq)]
@@ -40,7 +26,7 @@ impl Head {
     /// # Errors
     /// Where it is none.
     fn parse(bytes: &[u8]) -> Result<Option<Self>, httparse::Error> {
-        let mut headers = [httparse::EMPTY_HEADER; MOST_HEADERS];
+        let mut headers = [httparse::EMPTY_HEADER; TUNING.headers];
         let mut request = httparse::Request::new(&mut headers);
         let httparse::Status::Complete(length) = request.parse(bytes)? else { return Ok(None) };
         let text = |own: Option<&str>| own.unwrap_or_default().to_owned();
@@ -82,8 +68,8 @@ impl Connection {
     /// # Errors
     /// Where there is none, or it is too long, or the other end is silent.
     pub fn open(mut stream: TcpStream) -> io::Result<Self> {
-        stream.set_read_timeout(Some(SILENCE))?;
-        stream.set_write_timeout(Some(SILENCE))?;
+        stream.set_read_timeout(Some(TUNING.silence))?;
+        stream.set_write_timeout(Some(TUNING.silence))?;
         stream.set_nodelay(true)?;
         let mut bytes = Vec::new();
         let mut piece = [0; 4096];
@@ -95,7 +81,7 @@ impl Connection {
                     let begun = bytes.split_off(head.length);
                     return Ok(Self { stream, head, begun });
                 }
-                Ok(None) if count > 0 && bytes.len() < MOST_HEAD => {}
+                Ok(None) if count > 0 && bytes.len() < TUNING.head_bytes => {}
                 _ => {
                     let answer = Answer::error(400, "this is no request of HTTP");
                     close(&mut stream, &answer);
@@ -116,7 +102,7 @@ impl Connection {
         }
         let length = head.header("content-length").map_or(Ok(0), str::parse::<usize>);
         let length = length.map_err(|_| Answer::error(400, "the length is no number"))?;
-        if length > MOST_BODY {
+        if length > TUNING.body_bytes {
             return Err(Answer::error(413, "the request is too long"));
         }
         let broken = |_| Answer::error(400, "the request breaks off");
@@ -143,8 +129,8 @@ impl Connection {
 fn close(stream: &mut TcpStream, answer: &Answer) {
     // An end that is gone reads nothing.
     if answer.write(stream).is_ok() && stream.shutdown(Shutdown::Write).is_ok() {
-        let _ = stream.set_read_timeout(Some(LINGER));
-        let _ = io::copy(&mut stream.take(MOST_DROPPED), &mut io::sink());
+        let _ = stream.set_read_timeout(Some(TUNING.linger));
+        let _ = io::copy(&mut stream.take(TUNING.dropped_bytes), &mut io::sink());
     }
 }
 
@@ -165,7 +151,7 @@ mod tests {
         for wrong in [&b"GET / HTTP/2.0\r\n\r\n"[..], b"\x16\x03\x01", b"GET / HTTP/1.1\r\nno colon\r\n\r\n"] {
             assert!(Head::parse(wrong).is_err(), "{wrong:?}");
         }
-        let many = format!("GET / HTTP/1.1\r\n{}\r\n", "a: b\r\n".repeat(MOST_HEADERS + 1));
+        let many = format!("GET / HTTP/1.1\r\n{}\r\n", "a: b\r\n".repeat(TUNING.headers + 1));
         assert!(Head::parse(many.as_bytes()).is_err());
     }
 }

@@ -3,21 +3,16 @@
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use super::board::Board;
 use super::questions::{Move, Values};
 use super::requests::Requests;
 use super::texts::{Followed, TextError, Texts};
+use super::tuning::TUNING;
 use crate::model::Description;
 use crate::results::{Bounds, Summary};
 use crate::syntax::within::OpenTexts;
-
-/// How long nothing is typed before a text is read: bounds of half a word are nobody's.
-const QUIET: Duration = Duration::from_millis(250);
-
-/// Between two questions whether the studio has ended.
-const BETWEEN: Duration = Duration::from_millis(100);
 
 /// A model that could be read.
 pub struct Current {
@@ -188,12 +183,13 @@ impl Desk {
         while !self.has_ended() {
             let change = self.change.load(Ordering::Relaxed);
             // The first text is read at once.
-            if change != seen && (seen == 0 || state.changed.elapsed() >= QUIET) {
+            if change != seen && (seen == 0 || state.changed.elapsed() >= TUNING.quiet) {
                 let (path, overlay) = (state.texts.model().to_owned(), state.texts.overlay());
                 let (scene, is_allowed) = (state.scene.clone(), state.is_allowed);
                 return Some(Reading { change, path, overlay, scene, is_allowed });
             }
-            state = self.bell.wait_timeout(state, BETWEEN).unwrap_or_else(PoisonError::into_inner).0;
+            state =
+                self.bell.wait_timeout(state, TUNING.between_looks_of_desk).unwrap_or_else(PoisonError::into_inner).0;
         }
         None
     }
@@ -219,7 +215,8 @@ impl Desk {
             if let Some(current) = state.current.as_ref().filter(|current| current.number != seen) {
                 return Some(Arc::clone(current));
             }
-            state = self.bell.wait_timeout(state, BETWEEN).unwrap_or_else(PoisonError::into_inner).0;
+            state =
+                self.bell.wait_timeout(state, TUNING.between_looks_of_desk).unwrap_or_else(PoisonError::into_inner).0;
         }
         None
     }

@@ -6,14 +6,11 @@ use std::sync::atomic::{AtomicI32, Ordering};
 use std::sync::mpsc::{Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
-use std::time::Duration;
 
+use super::tuning::TUNING;
 use lsp_server::{Connection, Message, Notification, Request, RequestId, Response};
 use mbint_lsp::{attend, uri_of};
 use serde_json::{Value, json};
-
-/// How long an answer may take.
-const PATIENCE: Duration = Duration::from_secs(30);
 
 /// Requests of the page that are passed on: they change nothing.
 pub const METHODS: [&str; 7] = [
@@ -79,7 +76,7 @@ impl Language {
         let gone = || "the language server does not answer".to_owned();
         let request = Request { id, method: method.to_owned(), params };
         self.connection.sender.send(Message::Request(request)).map_err(|_| gone())?;
-        let response = answered.recv_timeout(PATIENCE).map_err(|_| gone())?;
+        let response = answered.recv_timeout(TUNING.patience_of_language).map_err(|_| gone())?;
         match response.error {
             Some(error) => Err(error.message),
             None => Ok(response.result.unwrap_or_default()),

@@ -18,6 +18,7 @@ mod routes;
 mod samples;
 mod serve;
 mod texts;
+pub mod tuning;
 mod watch;
 
 pub use serve::{Options, StudioError, serve};

@@ -6,14 +6,12 @@ use serde_json::{Value, json};
 
 use super::desk::{Current, Desk};
 use super::questions::{Drag, Move, replaced};
+use super::tuning::TUNING;
 use crate::export::{MOST_TRIANGLES, ReportParts, motion_json, read_meshes};
 use crate::numerics::Sample;
 use crate::results::Motion;
 use crate::simulate::Interruption;
 use crate::study::{self, Hand, Movable};
-
-/// Numbers of two bytes that a motion comes to, about.
-const SIZE: usize = 100_000;
 
 /// Serves one model after the other, until the end.
 pub fn work(desk: &Desk) {
@@ -60,7 +58,7 @@ fn serve(desk: &Desk, current: &Current) -> Result<(), String> {
 
 /// A motion as the report's scripts read it.
 fn motion(movable: &Movable, sample: &Sample, beside: &Path) -> Result<Value, String> {
-    let mut found: Motion = movable.motion(sample, SIZE).map_err(|error| error.to_string())?;
+    let mut found: Motion = movable.motion(sample, TUNING.numbers_of_motion).map_err(|error| error.to_string())?;
     read_meshes(&mut found.drawing, beside, MOST_TRIANGLES);
     let parts = ReportParts { description: None, texts: Vec::new(), motion: Ok(found), page: false };
     let json = motion_json(&parts, None).map_err(|error| error.to_string())?;

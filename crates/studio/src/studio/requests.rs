@@ -4,12 +4,9 @@ use std::collections::VecDeque;
 use std::mem::discriminant;
 use std::sync::mpsc::{Sender, channel};
 use std::sync::{Condvar, Mutex, PoisonError};
-use std::time::Duration;
 
+use super::tuning::TUNING;
 use serde_json::Value;
-
-/// How often a worker that waits asks whether it is to end.
-const BETWEEN: Duration = Duration::from_millis(50);
 
 /// A question, and where its answer goes.
 pub struct Asked<Q> {
@@ -60,7 +57,11 @@ impl<Q> Requests<Q> {
             if let Some(first) = waiting.pop_front() {
                 return Some(first);
             }
-            waiting = self.bell.wait_timeout(waiting, BETWEEN).unwrap_or_else(PoisonError::into_inner).0;
+            waiting = self
+                .bell
+                .wait_timeout(waiting, TUNING.between_looks_of_requests)
+                .unwrap_or_else(PoisonError::into_inner)
+                .0;
         }
         None
     }

@@ -7,7 +7,6 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
-use std::time::Duration;
 
 use serde_json::{Value, json};
 
@@ -18,14 +17,9 @@ use super::guard::Guard;
 use super::language::Language;
 use super::routes::Routes;
 use super::texts::{TextError, Texts};
+use super::tuning::TUNING;
 use super::{bounds, moves, samples, watch};
 use crate::study;
-
-/// Between two questions whether to end.
-const BETWEEN: Duration = Duration::from_millis(100);
-
-/// Connections at a time: a page has six.
-const MOST: usize = 64;
 
 /// A session.
 pub struct Options<'o> {
@@ -95,7 +89,7 @@ pub fn serve(options: Options) -> Result<(), StudioError> {
     thread::spawn(move || listen(&listener, &Arc::new(guard), &routes));
     started(&page);
     while !is_ended() {
-        thread::sleep(BETWEEN);
+        thread::sleep(TUNING.between_looks_of_server);
     }
     desk.end();
     settle(address);
@@ -105,7 +99,7 @@ pub fn serve(options: Options) -> Result<(), StudioError> {
 /// Gives waiting pages the time to hear of the end.
 fn settle(address: SocketAddr) {
     let _ = TcpStream::connect(address);
-    thread::sleep(BETWEEN);
+    thread::sleep(TUNING.between_looks_of_server);
 }
 
 /// Answers each connection in a thread of its own, until the studio ends.
@@ -117,7 +111,7 @@ fn listen(listener: &TcpListener, guard: &Arc<Guard>, routes: &Arc<Routes>) {
             return;
         }
         // Whoever opens many waits.
-        if open.load(Ordering::Relaxed) >= MOST {
+        if open.load(Ordering::Relaxed) >= TUNING.connections {
             continue;
         }
         open.fetch_add(1, Ordering::Relaxed);

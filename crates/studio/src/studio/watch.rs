@@ -4,16 +4,14 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::thread::sleep;
-use std::time::{Duration, SystemTime};
+use std::time::SystemTime;
 
 use serde_json::{Value, json};
 
 use super::desk::Desk;
 use super::language::Language;
 use super::texts::Followed;
-
-/// Between two looks at the files.
-const BETWEEN: Duration = Duration::from_millis(300);
+use super::tuning::TUNING;
 
 /// Tells whether a file is as it was: when it was written, and its length; `None` where there is none.
 type Mark = Option<(SystemTime, u64)>;
@@ -29,7 +27,7 @@ pub fn work(desk: &Desk, language: &Language) {
     let mut notes: BTreeMap<String, Value> = BTreeMap::new();
     let mut changes = 0;
     while !desk.has_ended() {
-        sleep(BETWEEN);
+        sleep(TUNING.between_looks_at_files);
         for path in desk.sources() {
             let now = mark(&path);
             let is_as_it_was = match marks.insert(path.clone(), now) {

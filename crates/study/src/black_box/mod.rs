@@ -12,6 +12,7 @@ mod pool;
 mod process;
 mod questions;
 mod trouble;
+pub(crate) mod tuning;
 
 pub use pool::{Pool, Unanswered};
 pub use questions::Questions;

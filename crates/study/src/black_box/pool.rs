@@ -9,14 +9,9 @@ use super::csv::{self, Table};
 use super::launch::Launch;
 use super::process::{Process, Said};
 use super::trouble::Trouble;
+use super::tuning::TUNING;
 use super::{Answer, Questions, json};
 use crate::model::{BlackBox, Protocol};
-
-/// Bytes that a program may write in a call beside its answers.
-const CHATTER: u64 = 1 << 20;
-
-/// Bytes that a number may take, with what stands around it.
-const NUMBER: u64 = 64;
 
 /// Why no point has an answer.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -161,7 +156,7 @@ impl Pool {
             Protocol::Csv => csv::table(&self.questions, &values),
         };
         let numbers = self.questions.times.len() * (self.questions.outputs.len() + self.questions.parameters.len() + 2);
-        let most = CHATTER + 2 * text.len() as u64 + NUMBER * (points.len() * numbers) as u64;
+        let most = TUNING.chatter_bytes + 2 * text.len() as u64 + TUNING.number_bytes * (points.len() * numbers) as u64;
         let limit = self.own.time_limit.map(|limit| limit * points.len() as f64);
         let until = limit.map(|limit| Instant::now() + Duration::from_secs_f64(limit));
         process.give(text, most, !self.own.persistent);

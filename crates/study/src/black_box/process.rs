@@ -10,15 +10,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use super::trouble::Words;
-
-/// Bytes of standard error that are kept.
-const WORDS: usize = 4096;
-
-/// Time between two questions whether to go on.
-const GLANCE: Duration = Duration::from_millis(20);
-
-/// Time that a process has to end by itself once its input has ended.
-const GRACE: Duration = Duration::from_secs(2);
+use super::tuning::TUNING;
 
 /// What a process wrote.
 pub(super) enum Said {
@@ -84,7 +76,8 @@ impl Process {
     /// Its next line, or why there is none.
     pub fn next(&self, until: Option<Instant>, interrupted: &dyn Fn() -> bool) -> Said {
         loop {
-            let rest = until.map_or(GLANCE, |until| until.saturating_duration_since(Instant::now()).min(GLANCE));
+            let rest =
+                until.map_or(TUNING.glance, |until| until.saturating_duration_since(Instant::now()).min(TUNING.glance));
             match self.output.recv_timeout(rest) {
                 Ok(Some(line)) => return Said::Line(line),
                 Ok(None) => return Said::TooMuch,
@@ -101,14 +94,14 @@ impl Process {
     /// Ends it: its input, then itself where it goes on. Returns how it ended.
     pub fn end(&mut self, grace: bool) -> String {
         self.input = None;
-        let until = Instant::now() + if grace { GRACE } else { Duration::ZERO };
+        let until = Instant::now() + if grace { TUNING.grace } else { Duration::ZERO };
         let mut pause = Duration::from_micros(200);
         loop {
             match self.child.try_wait() {
                 Ok(Some(status)) => return status.to_string(),
                 Ok(None) if Instant::now() < until => {
                     thread::sleep(pause);
-                    pause = (2 * pause).min(GLANCE);
+                    pause = (2 * pause).min(TUNING.glance);
                 }
                 _ => break,
             }
@@ -185,7 +178,7 @@ fn listen(mut stderr: impl Read, words: &Mutex<VecDeque<u8>>) {
     while let Ok(read @ 1..) = stderr.read(&mut buffer) {
         let mut words = words.lock().unwrap_or_else(PoisonError::into_inner);
         words.extend(&buffer[..read]);
-        let beyond = words.len().saturating_sub(WORDS);
+        let beyond = words.len().saturating_sub(TUNING.words_bytes);
         words.drain(..beyond);
     }
 }

@@ -1,9 +1,7 @@
 //! Questions that every point has in common, and whether answers are to them.
 
 use super::trouble::Trouble;
-
-/// Times that differ by less than this share of the time between rows are the same.
-const SAME_TIME: f64 = 1e-6;
+use super::tuning::TUNING;
 
 /// Questions that every point has in common.
 #[derive(Clone, Debug)]
@@ -25,7 +23,7 @@ impl Questions {
         let wanted = self.times.get(row).copied().unwrap_or(f64::NAN);
         let spacing =
             if row > 0 { wanted - self.times[row - 1] } else { self.times.get(1).map_or(1.0, |t| t - wanted) };
-        let is_same = (found - wanted).abs() <= SAME_TIME * spacing.abs();
+        let is_same = (found - wanted).abs() <= TUNING.same_time * spacing.abs();
         if is_same || self.times.len() == 1 { Ok(()) } else { Err(Trouble::Time { row, found, wanted }) }
     }
 

@@ -1,9 +1,7 @@
 //! Why a point has no answer, in words for the user.
 
+use super::tuning::TUNING;
 use std::fmt;
-
-/// Characters of a text that is shown.
-const SHOWN: usize = 300;
 
 /// Why a point has no answer.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -104,7 +102,7 @@ fn tidy(time: f64) -> f64 {
 
 fn clipped(text: &str) -> String {
     let text = harmless(text);
-    match text.char_indices().nth(SHOWN) {
+    match text.char_indices().nth(TUNING.shown_characters) {
         Some((end, _)) => format!("{}…", &text[..end]),
         None => text,
     }
@@ -113,7 +111,7 @@ fn clipped(text: &str) -> String {
 /// The last characters.
 fn clipped_front(text: &str) -> String {
     let text = harmless(text);
-    let beyond = text.chars().count().saturating_sub(SHOWN);
+    let beyond = text.chars().count().saturating_sub(TUNING.shown_characters);
     if beyond == 0 { text } else { format!("…{}", text.chars().skip(beyond).collect::<String>()) }
 }
 

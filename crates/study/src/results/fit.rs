@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use super::tuning::TUNING;
 use crate::grammar::display_unit::DisplayUnit;
 use crate::numerics::Paving;
 
@@ -160,5 +161,5 @@ pub struct Fit {
 
 impl Fit {
     /// Most parameters for which the set is paved.
-    pub const MOST_PARAMETERS: usize = 6;
+    pub const MOST_PARAMETERS: usize = TUNING.most_parameters;
 }

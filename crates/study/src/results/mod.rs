@@ -24,6 +24,7 @@ mod samples;
 mod statistics;
 mod structure;
 mod summary;
+pub(crate) mod tuning;
 mod verification;
 
 pub use crate::methods::{Method, TooDeep};

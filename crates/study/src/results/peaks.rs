@@ -2,11 +2,8 @@
 
 use serde::Serialize;
 
+use super::tuning::TUNING;
 use super::{Band, Bounds, OutputBounds};
-
-/// How much higher than both ends of an interval a curve may be, relative to the largest second difference around it:
-/// twice what a parabola has.
-const BETWEEN: f64 = 0.25;
 
 /// The least and the greatest value of a band over the run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -86,7 +83,7 @@ fn between(values: &[f64], row: usize) -> f64 {
         _ if row + 1 >= last => 2.0 * second(last - 1) - second(last - 2),
         _ => 0.0,
     };
-    BETWEEN * worse(bent, at_end.abs())
+    TUNING.between_rows * worse(bent, at_end.abs())
 }
 
 /// The larger one; NaN is passed on, not over.

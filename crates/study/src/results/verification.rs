@@ -3,6 +3,7 @@
 use serde::Serialize;
 use symdiff::math;
 
+use super::tuning::TUNING;
 use crate::numerics::larger;
 
 /// A quantity whose error is measured.
@@ -118,9 +119,6 @@ pub struct PowerBalance {
     pub effects: Vec<EffectBalance>,
 }
 
-/// Share of a power, or of a derivative, that is rounding.
-const ROUNDING: f64 = 1e-9;
-
 impl EffectBalance {
     /// With the power at one more instant, and the rate at which energy is stored.
     pub fn add(&mut self, power: f64, stored: f64) {
@@ -131,7 +129,7 @@ impl EffectBalance {
 
     /// The exchange of energy that it shows.
     pub fn exchange(&self) -> Exchange {
-        let least = ROUNDING * self.power;
+        let least = TUNING.rounding * self.power;
         match (self.put_in <= least, self.taken <= least) {
             _ if self.power == 0.0 => Exchange::None,
             (true, true) => Exchange::Conserves,
@@ -144,7 +142,7 @@ impl EffectBalance {
 impl PowerBalance {
     /// Whether powers are balanced to rounding.
     pub fn is_verified(&self) -> bool {
-        self.defect <= ROUNDING
+        self.defect <= TUNING.rounding
     }
 }
 
@@ -169,7 +167,7 @@ impl DerivativeCheck {
 
     /// Whether all derivatives are exact to rounding.
     pub fn is_verified(&self) -> bool {
-        self.difference <= ROUNDING
+        self.difference <= TUNING.rounding
     }
 }
 
@@ -209,25 +207,6 @@ pub struct Verification {
     pub formulations: Vec<FormulationVerification>,
 }
 
-/// Share of theory's order that an observed one may be lower.
-const WITHIN: f64 = 0.05;
-/// Larger ones than this share above are not those of short steps yet.
-const ABOVE: f64 = 0.1;
-
-/// Methods of a higher order show it only where forces have as many derivatives, and steps are short long before errors
-/// are those of rounding; errors that get there at a higher order than this are as in theory, too.
-const HIGH: f64 = 4.0;
-
-/// Orders that exceed that of theory by more than this factor tell only that they do.
-const MORE: f64 = 1.5;
-
-/// An error that falls by less than this order, and is less than this, is rounding's.
-const FLAT: f64 = 1.0;
-const SMALL: f64 = 1e-6;
-
-/// Errors of less than so many times that of rounding are touched by it.
-const TOUCHED: f64 = 3.0;
-
 impl Convergence {
     /// Of a quantity whose errors below `rounding` are none of the steps.
     pub fn new(quantity: Quantity, theory: f64, rounding: f64) -> Self {
@@ -254,15 +233,15 @@ impl Convergence {
         match self.order {
             None => "exact".to_owned(),
             // Transients that long steps damp, or rounding at once.
-            Some(order) if order > MORE * self.theory => format!("> {:.0}", self.theory),
+            Some(order) if order > TUNING.far_above_theory * self.theory => format!("> {:.0}", self.theory),
             Some(order) => format!("{order:.2}"),
         }
     }
 
     /// Whether shorter steps do not make the error smaller, which is small already.
     fn is_flat(&self) -> bool {
-        let is_small = self.errors.last().is_some_and(|(_, error)| *error < SMALL);
-        is_small && self.orders.last().is_some_and(|order| *order < FLAT)
+        let is_small = self.errors.last().is_some_and(|(_, error)| *error < TUNING.small_error);
+        is_small && self.orders.last().is_some_and(|order| *order < TUNING.flat_order)
     }
 
     /// Whether the last error is rounding's.
@@ -284,13 +263,13 @@ impl Convergence {
     }
 
     fn follows(&self, order: f64) -> bool {
-        order >= (1.0 - WITHIN) * self.theory
+        order >= (1.0 - TUNING.below_theory) * self.theory
     }
 
     /// Whether the last two orders are that of theory, and rounding does not touch them.
     fn is_asymptotic(&self) -> bool {
-        let is_near = |order: &f64| self.follows(*order) && *order <= (1.0 + ABOVE) * self.theory;
-        let least = TOUCHED * self.rounding();
+        let is_near = |order: &f64| self.follows(*order) && *order <= (1.0 + TUNING.above_theory) * self.theory;
+        let least = TUNING.touched * self.rounding();
         let is_clean = self.errors.last().is_some_and(|(_, error)| *error > least);
         is_clean && self.orders.len() >= 2 && self.orders.iter().rev().take(2).all(is_near)
     }
@@ -299,12 +278,12 @@ impl Convergence {
     /// fall, the largest of the last three, which it only lowers, and of those below the stated rounding, as far as
     /// errors fell there. `None` where there are none: steps of any length are exact.
     fn observed(&self) -> Option<f64> {
-        let stated = TOUCHED * self.rounding();
+        let stated = TUNING.touched * self.rounding();
         if !(self.is_flat() || self.is_exact()) {
             return self.known(stated).next_back();
         }
         let largest = |least: f64| self.known(least).rev().take(3).reduce(f64::max);
-        let reached = self.errors.iter().fold(stated, |least, (_, error)| least.min(TOUCHED * error));
+        let reached = self.errors.iter().fold(stated, |least, (_, error)| least.min(TUNING.touched * error));
         largest(stated).map(|order| largest(reached).map_or(order, |below| order.max(below)))
     }
 
@@ -315,7 +294,7 @@ impl Convergence {
 
     fn is_as_in_theory(&self) -> bool {
         let ends = self.is_flat() || self.is_exact();
-        let is_limited = |order: f64| self.theory > HIGH && ends && order > HIGH;
+        let is_limited = |order: f64| self.theory > TUNING.high_order && ends && order > TUNING.high_order;
         self.order.map_or(ends, |order| self.follows(order) || is_limited(order))
     }
 }

@@ -10,6 +10,7 @@ mod error;
 mod part;
 mod plan;
 mod task;
+pub(crate) mod tuning;
 mod whole;
 
 use std::collections::HashSet;

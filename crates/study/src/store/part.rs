@@ -6,13 +6,14 @@
 use std::fs::File;
 use std::io::{BufReader, BufWriter, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use sha2::{Digest, Sha256};
 use tempfile::NamedTempFile;
 
 use super::FORMAT;
 use super::error::StoreError;
+use super::tuning::TUNING;
 use super::whole::{self, Durable};
 use crate::methods::Simulated;
 use crate::numerics::ScanBounds;
@@ -20,10 +21,6 @@ use crate::numerics::ScanBounds;
 const MAGIC: &[u8; 8] = b"mbint\x00pt";
 const HEADER: u64 = 12;
 const HASH: u64 = 32;
-
-/// What took longer to simulate is on the disk before it appears. Of the rest a loss of power costs the last half
-/// minute's at most, which a system writes by itself.
-const WORTH_SYNCING: Duration = Duration::from_secs(1);
 
 /// The end of a part: what became of the samples, and the bounds of a scan.
 type Outcome = (Simulated, Option<ScanBounds>);
@@ -81,7 +78,7 @@ impl PartWriter {
         let failed = |error| StoreError::io(&self.path, error);
         self.file.write_all(&hash).map_err(failed)?;
         let file = self.file.into_inner().map_err(|error| StoreError::io(&self.path, error.into_error()))?;
-        let durable = if self.begun.elapsed() > WORTH_SYNCING { Durable::Now } else { Durable::Soon };
+        let durable = if self.begun.elapsed() > TUNING.worth_syncing { Durable::Now } else { Durable::Soon };
         whole::persist(file, &self.path, durable).map_err(|error| StoreError::io(&self.path, error))
     }
 }

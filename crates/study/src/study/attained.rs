@@ -14,6 +14,7 @@ mod kept;
 mod model;
 mod slopes;
 mod surface;
+pub(crate) mod tuning;
 
 use super::bounding::{Attained, Outcome, bound, simulation_error, timed};
 use super::ensemble::Progress;
@@ -30,35 +31,7 @@ use climb::{Climb, End, Known};
 use slopes::OfRows;
 pub(super) use slopes::{Slope, Slopes};
 use surface::{Surface, Surfaces};
-
-/// Fewer parameters are searched by the surrogate alone, whose samples are dense enough.
-const MANY: usize = 6;
-
-/// Most ends that are climbed to from three points; more rows are climbed to from samples of those.
-const FOLLOWED: usize = 128;
-
-/// Steps of a climb.
-const STEPS: usize = 24;
-
-/// How often ends are climbed to from samples that others found.
-const SHARED: usize = 3;
-
-/// Corners from which ends are climbed to at which climbs do not agree.
-const DOUBTED: usize = 12;
-
-/// Simulations that a gradient in the last row costs, for the count; in earlier rows less.
-const COST: usize = 4;
-
-/// Work for each simulation of the budget: gradients count in full, and most of them are of shorter motions.
-const WORK: usize = 4;
-
-/// Fewest and most points of polynomials beside the middle of the box: two more than the parameters.
-const LEAST_POINTS: usize = 16;
-const MOST_POINTS: usize = 32;
-
-/// Points of polynomials that are the surrogate of a run: with so many, what 100 parameters of a chain leave to
-/// statistics is a tenth of their spread.
-const KEPT_POINTS: usize = 64;
+use tuning::TUNING;
 
 /// What the search found: its cost, the samples, and bounds.
 type AttainedEnds = (Outcome, Attained, FollowedEnds);
@@ -103,7 +76,7 @@ pub(super) fn attained(
     let has_motion = !study.simulator.system.analysis.visits();
     // A smaller budget is left to the surrogate.
     let is_afforded = study.request.budget.simulations >= Budget::default().simulations;
-    let is_wanted = is_adaptive && is_afforded && study.domain.dimension() >= MANY;
+    let is_wanted = is_adaptive && is_afforded && study.domain.dimension() >= TUNING.fewest_parameters;
     let has_jumps = || (0..motions.outputs()).any(|output| motions.jumps(output));
     if !is_wanted || !has_motion || study.interruption.is_asked() || has_jumps() {
         return Ok(None);
@@ -168,7 +141,7 @@ impl<'s, 'm> AttainedSearch<'s, 'm> {
     /// Ends of all rows and outputs; `None` where gradients do not reach them.
     fn run(&mut self) -> Result<Option<FollowedEnds>, SimulationError> {
         let (rows, outputs) = (self.motions.rows(), self.motions.outputs());
-        let every = (2 * rows * outputs).div_ceil(FOLLOWED).max(1);
+        let every = (2 * rows * outputs).div_ceil(TUNING.followed_ends).max(1);
         let chosen: Vec<usize> = (0..rows).rev().step_by(every).collect();
         let Some((surfaces, followed)) = self.surfaces(&chosen)? else { return Ok(None) };
         if self.study.request.keep {
@@ -230,13 +203,13 @@ impl<'s, 'm> AttainedSearch<'s, 'm> {
     fn is_spent(&self) -> bool {
         let Budget { simulations, seconds } = self.study.request.budget;
         self.study.interruption.is_asked()
-            || self.work >= WORK * simulations + self.work_of_kept
+            || self.work >= TUNING.work_of_budget * simulations + self.work_of_kept
             || seconds.is_some_and(|seconds| self.begun.elapsed().as_secs_f64() >= seconds)
     }
 
     /// Goes on with climbs until all are done.
     fn follow(&mut self, climbs: &mut [Climb]) -> Result<(), SimulationError> {
-        for _ in 0..STEPS {
+        for _ in 0..TUNING.steps_of_climb {
             let mut points: Vec<Vec<f64>> = Vec::new();
             let mut going: Vec<(&mut Climb, usize)> = Vec::new();
             for climb in climbs.iter_mut().filter(|climb| !climb.is_done) {
@@ -270,7 +243,7 @@ impl<'s, 'm> AttainedSearch<'s, 'm> {
 
     /// Climbs on from samples that are better than all climbs to an end.
     fn share(&mut self, climbs: &mut Vec<Climb>) -> Result<(), SimulationError> {
-        for _ in 0..SHARED {
+        for _ in 0..TUNING.shared_rounds {
             let mut better: Vec<Climb> = Vec::new();
             for of_end in by_end(climbs) {
                 let Some(best) = best(of_end) else { continue };
@@ -290,7 +263,8 @@ impl<'s, 'm> AttainedSearch<'s, 'm> {
     /// Climbs from other corners to ends at which those so far do not agree, or that they did not reach.
     fn doubted(&self, climbs: &mut [Climb]) -> Vec<Climb> {
         let corner = |point: Vec<f64>| -> Vec<f64> { point.into_iter().map(f64::signum).collect() };
-        let corners: Vec<Vec<f64>> = spread(self.study.domain.dimension(), DOUBTED).into_iter().map(corner).collect();
+        let corners: Vec<Vec<f64>> =
+            spread(self.study.domain.dimension(), TUNING.corners_of_doubt).into_iter().map(corner).collect();
         let is_doubted = |of_end: &&[Climb]| {
             let open = ends::open_of(self, of_end);
             SAFETY_OF_SURROGATE * (open.promise + open.gap) > self.allowed[of_end[0].end.output]
@@ -303,7 +277,11 @@ impl<'s, 'm> AttainedSearch<'s, 'm> {
     fn surfaces(&mut self, rows: &[usize]) -> Result<Option<Followable>, SimulationError> {
         let k = self.study.domain.dimension();
         let mut points = vec![vec![0.0; k]];
-        let count = if self.study.request.keep { KEPT_POINTS } else { (k + 2).clamp(LEAST_POINTS, MOST_POINTS) };
+        let count = if self.study.request.keep {
+            TUNING.kept_points
+        } else {
+            (k + 2).clamp(TUNING.least_points, TUNING.most_points)
+        };
         points.extend(spread(k, count));
         self.simulate(&points)?;
         let outputs = self.motions.outputs();
@@ -355,7 +333,7 @@ impl<'s, 'm> AttainedSearch<'s, 'm> {
         let study = self.study;
         let samples = study.domain.samples(points);
         let rows: usize = wanted.iter().map(|wanted| wanted.row + 1).sum();
-        self.work += (COST * rows).div_ceil(self.motions.rows().max(1));
+        self.work += (TUNING.cost_of_gradient * rows).div_ceil(self.motions.rows().max(1));
         let Some(found) = self.slopes.slopes(&samples, wanted)? else { return Ok(None) };
         let scaled = |by_parameters: Vec<f64>| {
             by_parameters.into_iter().enumerate().map(|(axis, by)| by * study.domain.half_width(axis)).collect()

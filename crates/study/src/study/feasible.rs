@@ -12,21 +12,10 @@ use super::problem::Study;
 use super::single::{self, Tried, try_samples};
 
 use super::RunError;
+use super::tuning::TUNING;
 use crate::numerics::{ParameterBox, Range, spread, validation};
 use crate::results::{self, Bounds, ErrorSummary, PieceSummary, Summary, add_methods, bounds_of_pieces};
 use crate::simulate::SimulationError;
-
-/// Samples of the box that tell how much of it fails.
-const SURVEYED: usize = 1000;
-
-/// Most pieces that the box is cut into.
-const MOST_PIECES: usize = 32;
-
-/// A piece of this share of the box is not cut any more.
-const SMALLEST: f64 = 1.0 / 1024.0;
-
-/// A parameter whose failing samples lie off its middle by so much on average (of ξ) matters.
-const LEANS: f64 = 0.2;
 
 /// Samples spread over the box of which some cannot be assembled.
 #[derive(Clone, Debug, PartialEq)]
@@ -81,7 +70,7 @@ pub(super) fn explained(study: &Study, error: RunError) -> RunError {
 fn survey(study: &Study, first: SimulationError) -> Survey {
     let domain = &study.domain;
     let mut points = validation(domain.dimension(), study.request.degree());
-    points.extend(spread(domain.dimension(), SURVEYED));
+    points.extend(spread(domain.dimension(), TUNING.surveyed));
     let can = study.simulator.can_assemble(&domain.samples(&points));
     let failing: Vec<&Vec<f64>> = points.iter().zip(&can).filter(|(_, can)| !**can).map(|(xi, _)| xi).collect();
     let place = |axis: usize| {
@@ -92,7 +81,7 @@ fn survey(study: &Study, first: SimulationError) -> Survey {
         let towards = all.then(|| domain.value(axis, mean.signum()));
         let [lower, upper] = [range.lower, range.upper].map(|xi| domain.value(axis, xi));
         let parameter = study.simulator.system.parameters[axis].name.clone();
-        let says = !(all && mean.abs() < LEANS) && domain.half_width(axis) > 0.0;
+        let says = !(all && mean.abs() < TUNING.leans) && domain.half_width(axis) > 0.0;
         says.then_some(Place { parameter, lower, upper, towards })
     };
     let places = (0..domain.dimension()).filter_map(place).collect();
@@ -152,9 +141,9 @@ fn cut(study: &Study) -> Result<Vec<Piece>, RunError> {
         Ok(Piece { domain, share, found })
     };
     let mut pieces = vec![piece(study.domain.clone(), 1.0)?];
-    while pieces.len() < MOST_PIECES && !study.interruption.is_asked() {
+    while pieces.len() < TUNING.most_pieces && !study.interruption.is_asked() {
         let gain = |piece: &Piece| match &piece.found {
-            Found::Partly { lost, .. } if piece.share > SMALLEST => piece.share * lost,
+            Found::Partly { lost, .. } if piece.share > TUNING.smallest_piece => piece.share * lost,
             _ => 0.0,
         };
         let Some(worst) = (0..pieces.len()).max_by(|&a, &b| gain(&pieces[a]).total_cmp(&gain(&pieces[b]))) else {

@@ -5,9 +5,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use super::interval::{Interval, TINY};
 use crate::expr::{Binary, Unary};
-
-/// Allowance for a library's error, relative to the value.
-const OF_LIBRARY: f64 = 4.0 * f64::EPSILON;
+use crate::tuning::TUNING;
 
 /// `function(a)` contains the value at every member of a; all numbers where a member has none.
 pub fn unary(function: Unary, a: Interval) -> Interval {
@@ -63,7 +61,7 @@ fn sign(a: f64) -> f64 {
 
 /// Computed ends with an allowance for the library's error.
 fn widened(lower: f64, upper: f64) -> Interval {
-    let allowance = |value: f64| OF_LIBRARY * value.abs() + TINY;
+    let allowance = |value: f64| TUNING.of_library * value.abs() + TINY;
     Interval::new(lower - allowance(lower), upper + allowance(upper))
 }
 

@@ -19,9 +19,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::graph::Graph;
 use super::node::{Binary, Expr, Node, Unary};
-
-/// Degree of a polynomial that is still seen to be one.
-const MOST: usize = 12;
+use crate::tuning::TUNING;
 
 impl Graph {
     /// ∫ `of` d`by` from 0, where `by` is a symbol; `None` where it is not of the forms above.
@@ -133,7 +131,7 @@ impl Graph {
             return None;
         }
         let mut slopes = vec![of];
-        while slopes.len() <= MOST {
+        while slopes.len() <= TUNING.degree_of_polynomial {
             let slope = self.derivative(slopes[slopes.len() - 1], by);
             if self.is_zero(slope) {
                 return Some(slopes);

@@ -2,12 +2,7 @@
 
 use super::spline::Spline;
 use crate::eval::interval::Interval;
-
-/// A jump at the knots below this share of the values there is of rounding.
-const OF_ROUNDING: f64 = 1e-9;
-
-/// Periods from which on a range is too far from the first one.
-const MOST_PERIODS: f64 = 1e9;
+use crate::tuning::TUNING;
 
 /// A cubic and where it holds.
 #[derive(Clone, Copy, Debug)]
@@ -37,7 +32,7 @@ impl Spline {
             let per_period = knots.len() as i64 - 1;
             let [first, last] = [knots[0], knots[knots.len() - 1]];
             let periods = [range.lower(), range.upper()].map(|x| ((x - first) / (last - first)).floor());
-            if periods.iter().any(|count| count.abs() > MOST_PERIODS) {
+            if periods.iter().any(|count| count.abs() > TUNING.most_periods) {
                 return Vec::new();
             }
             // One more period on either side, as quotients are rounded.
@@ -98,7 +93,7 @@ impl Spline {
             sum += (end - start).magnitude();
             size = size.max(end.magnitude()).max(start.magnitude());
         }
-        (sum <= OF_ROUNDING * size).then_some(sum * (1.0 + 1e-9))
+        (sum <= TUNING.jump_of_rounding * size).then_some(sum * (1.0 + 1e-9))
     }
 }
 

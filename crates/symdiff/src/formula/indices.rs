@@ -4,6 +4,7 @@ use std::fmt;
 use std::ops::{Range, RangeInclusive};
 
 use super::SyntaxError;
+use crate::tuning::TUNING;
 
 /// What a name stands for where something is repeated.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -79,9 +80,6 @@ pub fn whole(text: &str, lookup: &Lookup) -> Result<i64, SyntaxError> {
     Ok(value)
 }
 
-/// Deepest parentheses.
-const MAX_DEPTH: usize = 20;
-
 struct Whole<'t> {
     text: &'t str,
     position: usize,
@@ -132,7 +130,7 @@ impl Whole<'_> {
     }
 
     fn atom(&mut self) -> Result<i64, SyntaxError> {
-        if self.depth > MAX_DEPTH {
+        if self.depth > TUNING.depth_of_indices {
             return Err(self.unexpected());
         }
         self.depth += 1;

@@ -7,9 +7,7 @@ use rustc_hash::FxHashSet;
 use super::vocabulary::Vocabulary;
 use super::{FUNCTIONS, Function, SyntaxError, Term};
 use crate::expr::{Binary, Unary};
-
-/// How deep parentheses, signs and powers may nest.
-const MAX_DEPTH: usize = 100;
+use crate::tuning::TUNING;
 
 /// Words that join conditions.
 const WORDS: [&str; 3] = ["and", "or", "not"];
@@ -115,9 +113,9 @@ impl Parser<'_> {
         &mut self,
         inner: impl FnOnce(&mut Self) -> Result<usize, SyntaxError>,
     ) -> Result<usize, SyntaxError> {
-        if self.depth == MAX_DEPTH {
+        if self.depth == TUNING.depth_of_formulas {
             return Err(SyntaxError {
-                message: format!("the formula nests deeper than {MAX_DEPTH} levels"),
+                message: format!("the formula nests deeper than {} levels", TUNING.depth_of_formulas),
                 span: self.position..self.text.len().min(self.position + 1),
                 help: Some("split it into parameters".to_owned()),
             });

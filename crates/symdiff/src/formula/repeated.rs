@@ -6,12 +6,7 @@ use super::indices::{self, Index};
 use super::parser::Parser;
 use super::{SyntaxError, Term};
 use crate::expr::Binary;
-
-/// Most terms of a sum.
-const MOST: i64 = 10_000;
-
-/// Most operations of a formula with a sum: sums within sums multiply.
-const MOST_TERMS: usize = 50_000;
+use crate::tuning::TUNING;
 
 impl Parser<'_> {
     /// Whether names may have braces.
@@ -78,8 +73,8 @@ impl Parser<'_> {
                 let term = parser.sum();
                 parser.indices.pop();
                 let term = term?;
-                if parser.terms.len() > MOST_TERMS {
-                    let message = format!("the sum has more than {MOST_TERMS} operations");
+                if parser.terms.len() > TUNING.operations_of_sums {
+                    let message = format!("the sum has more than {} operations", TUNING.operations_of_sums);
                     return Err(SyntaxError { message, span: start..body, help: None });
                 }
                 sum = Some(match sum {
@@ -122,8 +117,8 @@ impl Parser<'_> {
         };
         let range = indices::range(&self.text[start..comma], &|name| self.whole_number(name));
         let range = range.map_err(|error| error.behind(start))?;
-        if range.end().saturating_sub(*range.start()) >= MOST {
-            let message = format!("a sum has at most {MOST} terms");
+        if range.end().saturating_sub(*range.start()) >= TUNING.terms_of_sum {
+            let message = format!("a sum has at most {} terms", TUNING.terms_of_sum);
             return Err(SyntaxError { message, span: start..comma, help: None });
         }
         self.position = comma + 1;

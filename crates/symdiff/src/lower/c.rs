@@ -4,9 +4,7 @@ use std::fmt::Write;
 
 use super::tape::{Op, Operands, Tape, TapePart};
 use crate::expr::{Binary, Spline, Unary};
-
-/// Statements of a function, at most, but for those of a region: compilers take more than proportionally long for more.
-const PIECE: usize = 2000;
+use crate::tuning::TUNING;
 
 /// Writes tapes over one memory `r` as C, and keeps the tables that they name.
 #[derive(Debug, Default)]
@@ -54,7 +52,7 @@ impl CWriter {
                 }
                 TapePart::Run(op, operands) => {
                     for registers in operands.chunks_exact(op.arity()) {
-                        if statements >= PIECE && ends.is_empty() {
+                        if statements >= TUNING.statements_of_function && ends.is_empty() {
                             pieces.push(std::mem::take(&mut text));
                             statements = 0;
                         }

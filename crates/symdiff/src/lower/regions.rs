@@ -10,9 +10,7 @@ use rustc_hash::FxHashMap;
 
 use super::tape::Guard;
 use crate::expr::{Binary, Expr, Graph, Node, Unary};
-
-/// Regions of fewer nodes than this are not worth the question.
-const LEAST: usize = 4;
+use crate::tuning::TUNING;
 
 /// Index of a region; 0 is no region at all.
 pub(crate) type RegionId = usize;
@@ -177,7 +175,7 @@ impl Regions {
             let outer = kept[within];
             self.nested[region].within = outer;
             self.nested[region].depth = self.nested[outer].depth + 1;
-            if size < LEAST {
+            if size < TUNING.least_region {
                 self.nested[region].guard = None;
                 kept.push(outer);
             } else {

@@ -6,10 +6,7 @@ use super::node_table::NodeTable;
 use super::regions::{OUTSIDE, RegionId, Regions, order};
 use super::tape::{Guard, Op};
 use crate::expr::Expr;
-
-/// Instructions are grouped by operation within stretches of this many: grouping saves dispatches, a limit keeps what
-/// is alive within the first-level cache.
-const WINDOW: usize = 256;
+use crate::tuning::TUNING;
 
 /// An instruction before it has registers.
 #[derive(Clone, Debug)]
@@ -98,11 +95,11 @@ struct Grouping {
 }
 
 impl Grouping {
-    /// Within stretches of [`WINDOW`] instructions, brings equal operations together: of those that are ready, always
+    /// Within stretches of so many instructions, brings equal operations together: of those that are ready, always
     /// all of the operation that has most.
     fn group(&mut self, pending: Vec<Pending>) -> Vec<Pending> {
         let mut grouped = Vec::with_capacity(pending.len());
-        for window in pending.chunks(WINDOW) {
+        for window in pending.chunks(TUNING.window_of_grouping) {
             for (index, one) in window.iter().enumerate() {
                 one.written().for_each(|expr| self.writer.insert(expr, index as u32));
             }

@@ -16,13 +16,11 @@ use symdiff::taylor_model::{MAX_ORDER, ModelSpace};
 use super::frame::Frame;
 use super::matrix::Models;
 use super::spaces::{Cell, Space};
+use super::tuning::TUNING;
 use super::{Certificate, Certified, Piece, ProvenCell};
 use cell::{Open, Passed, Shapes, Unknowns};
 use evaluation::{Given, State, evaluate};
 use range::Ranges;
-
-/// Most cells of a grid through all ends of pieces.
-const MOST_PARTS: usize = 10_000_000;
 
 /// How much was checked.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -129,7 +127,7 @@ fn is_covered(own: &Certified) -> bool {
     };
     let axes: Vec<Vec<f64>> = (0..own.lower.len()).map(ends).collect();
     let count = axes.iter().try_fold(1_usize, |count, ends| count.checked_mul(ends.len() - 1));
-    let Some(count) = count.filter(|count| *count <= MOST_PARTS) else { return false };
+    let Some(count) = count.filter(|count| *count <= TUNING.most_parts) else { return false };
     (0..count).all(|part| {
         let mut rest = part;
         let part: Vec<[f64; 2]> = axes

@@ -2,11 +2,9 @@
 
 use std::collections::BTreeMap;
 
+use crate::certificate::tuning::TUNING;
 use symdiff::jet::Monomials;
 use symdiff::taylor_model::{ModelSpace, up};
-
-/// Most boxes that are looked at.
-const MOST: usize = 100_000;
 
 /// Splits boxes until all are decided.
 pub(super) struct Ranges<'r> {
@@ -32,7 +30,7 @@ impl<'r> Ranges<'r> {
     /// Whether all values of a model are proven to be between two ends.
     pub fn is_within(&self, model: &[f64], [lower, upper]: [f64; 2]) -> bool {
         let mut open = vec![model.to_vec()];
-        for _ in 0..MOST {
+        for _ in 0..TUNING.most_boxes {
             let Some(next) = open.pop() else { return true };
             let (coefficients, radius) = next.split_at(next.len() - 1);
             let spread = up(coefficients[1..].iter().map(|c| c.abs()).sum::<f64>() + radius[0]);

@@ -5,8 +5,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use rustc_hash::FxHashMap;
 use symdiff::{Expr, Graph, SparseMatrix};
 
+use super::Numbers;
 use super::solve::Pivot;
-use super::{Numbers, PIVOT_SAMPLES};
+use crate::compile::tuning::TUNING;
 
 /// Whether a row or column is late, its number of entries, its index: the order of the search for pivots.
 pub type Key = (bool, usize, usize);
@@ -134,7 +135,7 @@ impl Active {
             Some(entry) => graph.sub(entry.value, product),
             None => graph.neg(product),
         };
-        let before = old.map_or([0.0; PIVOT_SAMPLES], |entry| entry.numbers);
+        let before = old.map_or([0.0; TUNING.pivot_samples], |entry| entry.numbers);
         let numbers: Numbers = std::array::from_fn(|sample| before[sample] - ratio[sample] * above.numbers[sample]);
         self.largest = numbers.iter().fold(self.largest, |largest, number| largest.max(number.abs()));
         if graph.is_zero(value) {

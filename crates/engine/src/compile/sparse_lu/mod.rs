@@ -16,15 +16,14 @@ mod ordering;
 mod pivoting;
 mod solve;
 
+use super::tuning::TUNING;
+
 pub use factor::{NoFactors, PivotRule, factorise};
 pub use pivoting::Pivoting;
 pub use solve::Factors;
 
-/// Number of states whose numbers guide the choice of pivots.
-pub const PIVOT_SAMPLES: usize = 4;
-
 /// An entry's value at each pivot sample.
-pub type Numbers = [f64; PIVOT_SAMPLES];
+pub type Numbers = [f64; TUNING.pivot_samples];
 
 #[cfg(test)]
 mod tests {
@@ -46,7 +45,7 @@ mod tests {
             for (column, &value) in values.iter().enumerate().filter(|(_, value)| **value != 0.0) {
                 let expr = graph.constant(value);
                 matrix.rows[row].push((column, expr));
-                numbers.push([value; PIVOT_SAMPLES]);
+                numbers.push([value; TUNING.pivot_samples]);
             }
         }
         let scale = vec![1.0; dense.len()];

@@ -4,7 +4,6 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use symdiff::{Expr, Graph, Stages};
 
-use super::PIVOT_SAMPLES;
 use super::active::{Active, Entry};
 use super::ordering::block_order;
 use crate::compile::tuning::TUNING;
@@ -301,7 +300,7 @@ impl Diagonals {
 /// |entry| over the largest of its column, at the worst pivot sample.
 fn size_against_column(active: &Active, row: usize, column: usize, singular: f64) -> f64 {
     let numbers = active.rows[row][&column].numbers;
-    (0..PIVOT_SAMPLES)
+    (0..TUNING.pivot_samples)
         .map(|sample| {
             let largest = active.columns[column]
                 .iter()

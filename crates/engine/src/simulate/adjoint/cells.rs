@@ -1,7 +1,6 @@
 //! Functions of the time as numbers over cells, lane by lane: what inputs are in a cell, and adjoints of that.
 
-/// Ends of cells are the same up to this share.
-const SAME: f64 = 1e-12;
+use super::tuning::TUNING;
 
 /// Functions of the time for gradients, each with its own.
 #[derive(Clone, Copy, Debug)]
@@ -36,7 +35,7 @@ impl TileInputs {
 
     /// The cell that holds what ends at a time, s.
     pub fn cell(&self, end: f64) -> usize {
-        self.ends.partition_point(|own| *own < end * (1.0 - SAME)).min(self.ends.len().saturating_sub(1))
+        self.ends.partition_point(|own| *own < end * (1.0 - TUNING.same_cells)).min(self.ends.len().saturating_sub(1))
     }
 
     /// The inputs in a cell.

@@ -22,6 +22,7 @@ mod rows;
 mod start;
 mod steps;
 mod tiles;
+pub(crate) mod tuning;
 
 pub use cells::Functions;
 pub(in crate::simulate) use cells::{TileInputs, TileKernel};

@@ -1,8 +1,7 @@
 //! The states between the steps of a tile, which are needed backwards: all of them where there is room, else those
 //! after every so many steps, from which the others are computed once more.
 
-/// Room for the states of a tile, bytes.
-const ROOM: usize = 32 << 20;
+use super::tuning::TUNING;
 
 /// A tile that takes steps.
 pub(in crate::simulate) trait Stepping {
@@ -39,7 +38,7 @@ impl<S: Stepping> Path<S> {
     pub fn new(stepping: S, steps: usize, visit: &mut dyn FnMut(usize, &[f64])) -> Self {
         let size = stepping.state().len();
         let of_one = size_of_val(stepping.state()).max(1);
-        let every = if (steps + 1) * of_one <= ROOM { steps.max(1) } else { steps.isqrt() + 1 };
+        let every = if (steps + 1) * of_one <= TUNING.path_bytes { steps.max(1) } else { steps.isqrt() + 1 };
         let (kept, window, unchanged) = (Vec::new(), Vec::new(), Vec::new());
         let mut path = Self { stepping, steps, size, every, kept, first: 0, window, unchanged };
         visit(0, path.stepping.state());

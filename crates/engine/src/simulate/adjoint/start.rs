@@ -10,6 +10,7 @@ use std::ops::Range;
 
 use symdiff::{Adjoints, Tape, Tile};
 
+use super::tuning::TUNING;
 use crate::compile::{Layout, StartProgram, Tapes};
 use crate::simulate::ensemble::corrections;
 use crate::simulate::simulator::Simulator;
@@ -244,7 +245,7 @@ impl<'s> StartAdjoints<'s> {
             self.pull_sampling(0.0);
             self.pull_acceleration();
         }
-        let times = corrections(1) + if program.open.is_any() { OPEN } else { 0 };
+        let times = corrections(1) + if program.open.is_any() { TUNING.open_corrections } else { 0 };
         self.pull_corrections(program.velocity(), layout.v.start, layout.v.len(), times);
         self.pull(program.given());
         self.take(layout.v.clone());
@@ -265,6 +266,3 @@ pub(in crate::simulate) struct Closing {
     positions: Vec<Vec<f64>>,
     velocities: Vec<Vec<f64>>,
 }
-
-/// Further corrections of a start that is nearest to rest: least squares converge linearly, though fast.
-const OPEN: usize = 10;

@@ -11,6 +11,7 @@ use super::path::Path;
 use super::rows::{LaneTerm, RowAdjoints};
 use super::start::StartAdjoints;
 use super::steps::{StepAdjoints, Steps};
+use super::tuning::TUNING;
 use crate::assemble::System;
 use crate::compile::Tapes;
 use crate::model::Analysis;
@@ -23,9 +24,6 @@ use crate::simulate::explicit::{ExplicitAdjoints, ExplicitRow, ExplicitSteps};
 use crate::simulate::interruption::Interruption;
 use crate::simulate::sampling::Instants;
 use crate::simulate::simulator::Simulator;
-
-/// Memories of a tile, in units of that of its steps: values and adjoints.
-const MEMORIES: usize = 2;
 
 /// A functional of a sample, and its derivatives.
 #[derive(Clone, Debug, PartialEq)]
@@ -113,7 +111,7 @@ pub fn gradients_under(
     let own = |number: usize| if is_cut { wanted[number].sample } else { 0 };
     let mut order: Vec<usize> = (0..wanted.len()).collect();
     order.sort_by_key(|&number| (own(number), wanted[number].last_row()));
-    let (registers, threads) = (MEMORIES * simulator.program.registers(), rayon::current_num_threads());
+    let (registers, threads) = (TUNING.tiles_memories * simulator.program.registers(), rayon::current_num_threads());
     let of_group = |group: &[usize]| -> Vec<(Vec<usize>, usize)> {
         let numbers = |first: usize, count: usize, width: usize| -> Vec<usize> {
             (0..width).map(|lane| group[first + lane.min(count - 1)]).collect()

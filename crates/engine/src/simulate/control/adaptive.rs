@@ -5,19 +5,11 @@ use symdiff::Expr;
 use super::chatter::Chatter;
 use super::controller::Controller;
 use super::switch_watch::SwitchWatch;
+use super::tuning::TUNING;
 use crate::simulate::events::locate::Crossing;
 use crate::simulate::features::FeatureWatch;
 use crate::simulate::simulator::Simulator;
 use crate::simulate::step::Stepper;
-
-/// A step longer than this share of the time left up to a goal is cut to half of that time, so that no sliver remains.
-const HALVE: f64 = 0.55;
-
-/// What functions of the positions may change by in a step, as a share of their range.
-pub(in crate::simulate) const MOST_CHANGE: f64 = 0.5;
-
-/// A step towards a switch ends this share beyond it, so that it is passed.
-const BEYOND: f64 = 1e-6;
 
 /// The samples in step, and the step size to try next.
 ///
@@ -92,7 +84,7 @@ impl<'s> Adaptive<'s> {
         let left = goal - time;
         let (step, end) = match self.h {
             h if h >= left * (1.0 - 1e-9) => (left, goal),
-            h if h > HALVE * left => (0.5 * left, time + 0.5 * left),
+            h if h > TUNING.halved_from * left => (0.5 * left, time + 0.5 * left),
             h => (h, time + h),
         };
         self.stepper.set_step_size(step);
@@ -124,7 +116,7 @@ impl<'s> Adaptive<'s> {
         let first = missed.map(|crossing| crossing.share).reduce(f64::min).filter(|_| step > self.controller.event());
         let crosses = crossings.iter().any(Option::is_some);
         self.h = match first {
-            Some(share) => (step * share * (1.0 + BEYOND)).max(self.controller.event()).min(0.9 * step),
+            Some(share) => (step * share * (1.0 + TUNING.beyond_switch)).max(self.controller.event()).min(0.9 * step),
             // A step cut short at a goal is no reason against the longer one.
             None if accepted && step < self.h && !crosses => self.h.max(next),
             None => next,
@@ -150,7 +142,7 @@ impl<'s> Adaptive<'s> {
         if let Some(features) = self.features.as_mut().filter(|_| step > self.controller.event()) {
             features.end(&self.stepper);
             for lane in (0..passes.len()).filter(|&lane| converged[lane] && self.stepper.alive()[lane]) {
-                passes[lane] = features.change(&self.stepper, lane, step, end, MOST_CHANGE);
+                passes[lane] = features.change(&self.stepper, lane, step, end, TUNING.most_change);
             }
         }
         passes

@@ -1,12 +1,7 @@
 //! Equations that switch to and fro: a force that jumps about a velocity which it cannot hold, as `sign` of it does at
 //! rest (a sliding mode). The error of a step is the whole jump, so that the tolerance asks for ever shorter steps.
 
-/// A lane chatters where velocities switch its equations so often, at least in one of so many steps.
-const CHATTERS: usize = 1000;
-const SELDOM: usize = 8;
-
-/// Most steps that a chattering lane may take up to the end of the run.
-pub const MOST_CHATTERING: usize = 20_000;
+use super::tuning::TUNING;
 
 /// Switches of velocities, lane by lane.
 #[derive(Clone, Debug)]
@@ -16,7 +11,7 @@ pub struct Chatter {
 
 #[derive(Clone, Copy, Debug, Default)]
 struct Lane {
-    /// [`SELDOM`] for each switch, less one for each other step.
+    /// `TUNING.chattering_share` for each switch, less one for each other step.
     excess: usize,
     /// When there was none yet, s, and the accepted steps since.
     since: f64,
@@ -36,7 +31,7 @@ impl Chatter {
         for (lane, switched) in self.lanes.iter_mut().zip(switched) {
             lane.steps += 1;
             match switched {
-                Some(switch) => (lane.switch, lane.excess) = (switch, lane.excess + SELDOM),
+                Some(switch) => (lane.switch, lane.excess) = (switch, lane.excess + TUNING.chattering_share),
                 None => lane.excess = lane.excess.saturating_sub(1),
             }
             if lane.excess == 0 {
@@ -48,9 +43,10 @@ impl Chatter {
     /// A lane of those that run, its switch, and since when, s, it chatters, where that would take too many steps from
     /// this time on for the rest, s, of the run.
     pub fn endless(&self, running: &[bool], time: f64, left: f64) -> Option<(usize, usize, f64)> {
-        let too_many = |lane: &Lane| left * lane.steps as f64 > MOST_CHATTERING as f64 * (time - lane.since);
-        let endless =
-            |&(index, lane): &(usize, &Lane)| running[index] && lane.excess >= CHATTERS * SELDOM && too_many(lane);
+        let too_many = |lane: &Lane| left * lane.steps as f64 > TUNING.most_chattering as f64 * (time - lane.since);
+        let endless = |&(index, lane): &(usize, &Lane)| {
+            running[index] && lane.excess >= TUNING.chattering_switches * TUNING.chattering_share && too_many(lane)
+        };
         self.lanes.iter().enumerate().find(endless).map(|(index, lane)| (index, lane.switch, lane.since))
     }
 }
@@ -73,19 +69,20 @@ mod tests {
 
     #[test]
     fn a_lane_is_endless_that_switches_to_and_fro_in_too_many_steps() {
-        let (chatter, time) = switching(1e-6, 2 * CHATTERS);
+        let (chatter, time) = switching(1e-6, 2 * TUNING.chattering_switches);
         // The three steps before the first switch do not count.
         assert_eq!(chatter.endless(&BOTH, time, 1.0), Some((0, 3, 3.0 * 1e-6)));
         assert_eq!(chatter.endless(&[false, true], time, 1.0), None, "a lane that no longer runs");
         assert_eq!(chatter.endless(&BOTH, time, 0.01), None, "10 000 steps are not too many");
-        let (chatter, time) = switching(1e-6, CHATTERS - 1);
+        let (chatter, time) = switching(1e-6, TUNING.chattering_switches - 1);
         assert_eq!(chatter.endless(&BOTH, time, 1.0), None);
     }
 
     #[test]
     fn a_lane_that_goes_on_without_a_switch_is_not_endless() {
-        let (mut chatter, time) = switching(1e-6, 2 * CHATTERS);
-        (0..2 * CHATTERS * SELDOM).for_each(|step| chatter.note([None; 2].into_iter(), time + step as f64 * 1e-6));
+        let (mut chatter, time) = switching(1e-6, 2 * TUNING.chattering_switches);
+        (0..2 * TUNING.chattering_switches * TUNING.chattering_share)
+            .for_each(|step| chatter.note([None; 2].into_iter(), time + step as f64 * 1e-6));
         assert_eq!(chatter.endless(&BOTH, 2.0 * time, 1.0), None);
         chatter.note([Some(0); 2].into_iter(), 0.5);
         assert_eq!(chatter.endless(&BOTH, 0.5, 1.0), None, "counted anew");

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::schedule::Schedule;
+use super::tuning::TUNING;
 
 /// Steps of a motion.
 #[derive(Clone, Copy, Debug)]
@@ -28,23 +29,14 @@ pub struct Controller {
 }
 
 impl Controller {
-    /// Smallest step, as a share of the duration; below it the control gives up.
-    pub const SMALLEST: f64 = 1e-13;
-
-    /// See [`event`](Self::event), as a share of the duration.
-    const EVENT: f64 = 1e-7;
-
-    /// Local errors below this are round-off and are not controlled: positions carry an error of ε, and so does δ.
-    const ROUND_OFF: f64 = 4.0 * f64::EPSILON;
-
     /// A switch is located to this, s: shorter steps are left to the errors that they make.
     pub fn event(self) -> f64 {
-        Self::EVENT * self.duration
+        TUNING.event_width * self.duration
     }
 
     /// Smallest step, s.
     pub fn least(self) -> f64 {
-        Self::SMALLEST * self.duration
+        TUNING.smallest_step * self.duration
     }
 
     /// For steps that are divided into so many parts: the scheme is of second order.
@@ -55,7 +47,7 @@ impl Controller {
 
     /// A step's local error over its share of the tolerance; the step is accepted where this is at most 1.
     pub fn error_ratio(self, error: f64, h: f64) -> f64 {
-        error / (self.tolerance * h / self.duration).max(Self::ROUND_OFF)
+        error / (self.tolerance * h / self.duration).max(TUNING.round_off_of_errors)
     }
 
     /// Factor for the next step size after a step with this error ratio (the worst sample's): δ/h is of second order.

@@ -3,12 +3,8 @@
 use std::ops::Range;
 
 use super::schedule::Schedule;
-use crate::simulate::time_functions::{MOST_ENCLOSURES, RESOLVED, TOO_FAST, TimeFunctions, Work};
-
-/// Most steps that a schedule may come to, for each that it has, and besides; and in any case beyond those that it has.
-const MOST_FOR_EACH: usize = 128;
-const MOST_BESIDES: usize = 20_000;
-const MOST_MORE: usize = 4_000_000;
+use super::tuning::TUNING;
+use crate::simulate::time_functions::{self, TimeFunctions, Work};
 
 /// A schedule with its steps divided.
 #[derive(Clone, Debug)]
@@ -30,12 +26,16 @@ impl TimeFunctions {
             return Divided { schedule: schedule.clone(), unresolved_from: None };
         }
         let steps = schedule.steps_before(schedule.rows.saturating_sub(1));
-        let mut left = MOST_FOR_EACH.saturating_mul(steps).saturating_add(MOST_BESIDES).min(steps + MOST_MORE);
+        let mut left = TUNING
+            .most_parts_of_step
+            .saturating_mul(steps)
+            .saturating_add(TUNING.most_parts_besides)
+            .min(steps + TUNING.most_further_steps);
         let mut rows = rows.into_iter().peekable();
         let mut ends = Vec::with_capacity(schedule.rows - 1);
         for row in 1..schedule.rows {
             let mut list = Vec::new();
-            if division.work.enclosures() > MOST_ENCLOSURES {
+            if division.work.enclosures() > time_functions::tuning::TUNING.most_enclosures {
                 left = 0;
             }
             if rows.next_if_eq(&row).is_some() && left > 0 {
@@ -78,7 +78,7 @@ impl Division<'_> {
             None => rows.clone().flat_map(|row| schedule.steps_to(row)).map(|(h, _)| h).fold(0.0, f64::max),
         };
         let span = (schedule.time(rows.start - 1), schedule.time(rows.end - 1));
-        if self.functions.are_resolved(span, longest, TOO_FAST, &mut self.work) {
+        if self.functions.are_resolved(span, longest, time_functions::tuning::TUNING.too_fast, &mut self.work) {
             return;
         }
         if rows.len() == 1 {
@@ -94,7 +94,7 @@ impl Division<'_> {
     fn divide_row(&mut self, row: usize, most: usize, ends: &mut Vec<f64>) {
         for (h, end) in self.schedule.steps_to(row) {
             let span = (end - h, end);
-            if self.functions.are_resolved(span, h, TOO_FAST, &mut self.work) {
+            if self.functions.are_resolved(span, h, time_functions::tuning::TUNING.too_fast, &mut self.work) {
                 ends.push(end);
             } else if ends.len() > most || !self.divide(end - h, end, self.functions.halvings(), most, ends) {
                 self.unresolved_from.get_or_insert(row);
@@ -107,7 +107,8 @@ impl Division<'_> {
 
     /// Divides a step; whether all its parts resolve the functions.
     fn divide(&mut self, a: f64, b: f64, halvings: u32, most: usize, ends: &mut Vec<f64>) -> bool {
-        let resolved = self.functions.are_resolved((a, b), b - a, RESOLVED, &mut self.work);
+        let resolved =
+            self.functions.are_resolved((a, b), b - a, time_functions::tuning::TUNING.resolved, &mut self.work);
         if resolved || halvings == 0 || ends.len() > most {
             ends.push(b);
             return resolved;

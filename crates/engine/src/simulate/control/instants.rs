@@ -3,15 +3,9 @@
 use std::borrow::Cow;
 
 use super::schedule::Schedule;
+use super::tuning::TUNING;
 use crate::compile::SampledValue;
 use crate::simulate::sampling::Instants;
-
-/// Times that differ by this share of the output step are the same.
-const ROUNDING: f64 = 1e-9;
-
-/// Shortest part of a step that ends at a chosen time, as a share of the step: multipliers of shorter ones are
-/// rounding.
-const SHORTEST: f64 = 0.01;
 
 impl Schedule {
     /// The same with steps that end at all multiples of periods, s, too.
@@ -26,7 +20,7 @@ impl Schedule {
     #[must_use]
     pub fn ending_at_times(&self, times: &[f64]) -> Self {
         let parts = |h: f64, end: f64| {
-            let near = SHORTEST * h;
+            let near = TUNING.shortest_part * h;
             let within = times.iter().copied().filter(move |time| *time > end - h + near && *time < end - near);
             let mut ends: Vec<f64> = within.collect();
             ends.sort_by(f64::total_cmp);
@@ -66,6 +60,6 @@ impl Schedule {
     pub(in crate::simulate) fn at_row(instant: f64, duration: f64, output_step: f64) -> f64 {
         let row = (instant / output_step).round();
         let time = Self::time_of(duration, output_step, row as usize);
-        if (time - instant).abs() <= ROUNDING * output_step { time } else { instant }
+        if (time - instant).abs() <= TUNING.same_instant * output_step { time } else { instant }
     }
 }

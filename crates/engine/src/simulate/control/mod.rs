@@ -11,9 +11,9 @@ mod refinement;
 mod samples;
 mod schedule;
 mod switch_watch;
+pub(crate) mod tuning;
 
 pub use adaptive::Adaptive;
-pub(in crate::simulate) use adaptive::MOST_CHANGE;
 pub use controller::{Controller, Steps};
 pub use division::Divided;
 pub use integration::Integration;

@@ -1,14 +1,12 @@
 //! Schedules of the same rows with more steps, by which errors are told.
 
 use super::schedule::{LastSteps, Schedule, Steps};
+use super::tuning::TUNING;
 use crate::simulate::events::segments::divided;
-
-/// Steps for each of those that they are at odds with.
-const FINER: f64 = 2.7;
 
 /// So many steps as end neither where one of `count` does nor half of it.
 fn odd_to(count: usize) -> usize {
-    let least = (FINER * count as f64).round() as usize;
+    let least = (TUNING.finer_steps * count as f64).round() as usize;
     (least..).find(|&others| are_coprime(others, 2 * count)).unwrap_or(least)
 }
 
@@ -90,6 +88,6 @@ impl Schedule {
     pub fn ratio_to(&self, other: &Self) -> f64 {
         let [these, others] =
             [self, other].map(|schedule| schedule.steps_before(schedule.rows.saturating_sub(1)) as f64);
-        if others > 0.0 { these / others } else { 1.0 / FINER }
+        if others > 0.0 { these / others } else { 1.0 / TUNING.finer_steps }
     }
 }

@@ -3,9 +3,9 @@
 use symdiff::{Expr, WIDTHS};
 
 use super::adaptive::{Adaptive, Attempt};
-use super::chatter::MOST_CHATTERING;
 use super::controller::Controller;
 use super::schedule::Schedule;
+use super::tuning::TUNING;
 use crate::numerics::Sample;
 use crate::simulate::diagnostics::{place_of, written};
 use crate::simulate::error::SimulationError;
@@ -14,15 +14,6 @@ use crate::simulate::sampling::{Instants, Sampling};
 use crate::simulate::simulator::Simulator;
 use crate::simulate::step::{LocalError, Stepper};
 use crate::simulate::time_functions::{ResolvingSteps, TimeFunctions};
-
-/// The first step, as a share of the output step.
-const FIRST_STEP: f64 = 1e-2;
-
-/// Where a run ends, its constraints are examined this share of an output step later: a residual needs time to grow.
-const LOOK_AHEAD: f64 = 0.5;
-
-/// Most steps of a schedule: where it needs more, no step resolves the motion.
-const MOST_STEPS: usize = 2_000_000;
 
 /// A schedule from a tolerance, and what ended it before the duration did.
 #[derive(Clone, Debug, PartialEq)]
@@ -132,12 +123,13 @@ impl<'s> Control<'s> {
         output_step: f64,
     ) -> Result<Self, SimulationError> {
         let width = WIDTHS.into_iter().find(|&width| width >= samples.len()).unwrap_or(samples.len());
-        let h = FIRST_STEP * output_step;
+        let h = TUNING.first_step * output_step;
         let start = simulator.assemble(width, h, |lane| samples[lane.min(samples.len() - 1)].clone())?;
         let steps = Adaptive::new(simulator, Stepper::new(&simulator.program, &start), controller, h);
         let functions = TimeFunctions::of(simulator, controller.duration);
-        let functions =
-            functions.map(|functions| ResolvingSteps::new(functions, &simulator.system, MOST_STEPS)).transpose()?;
+        let functions = functions
+            .map(|functions| ResolvingSteps::new(functions, &simulator.system, TUNING.most_steps))
+            .transpose()?;
         let sampling = Sampling::new(simulator, &start);
         Ok(Self {
             simulator,
@@ -163,7 +155,7 @@ impl<'s> Control<'s> {
 
     /// Whether no sample runs any more, or the schedule has as many steps as it may have.
     fn is_over(&self) -> bool {
-        !self.steps.stepper.alive().contains(&true) || self.count == MOST_STEPS
+        !self.steps.stepper.alive().contains(&true) || self.count == TUNING.most_steps
     }
 
     /// Tries a step from `time` towards the row at `goal`.
@@ -178,7 +170,7 @@ impl<'s> Control<'s> {
             _ => goal,
         };
         let attempt = self.steps.attempt(time, goal_of_step);
-        if self.steps.has_failed() || self.count == MOST_STEPS {
+        if self.steps.has_failed() || self.count == TUNING.most_steps {
             Outcome::Dropped(self.drop_failing(&attempt, time, goal))
         } else if attempt.accepted {
             self.count += 1;
@@ -205,10 +197,10 @@ impl<'s> Control<'s> {
         let cause = self.cause(lane, largest);
         self.steps.reject(attempt);
         let parameters = self.simulator.with_names(&self.samples[lane.min(self.samples.len() - 1)]);
-        let later = goal.max(time + LOOK_AHEAD * self.output_step);
+        let later = goal.max(time + TUNING.look_ahead * self.output_step);
         let error = match self.simulator.open_constraint(&self.steps.stepper.lane(lane), later) {
             Some(open) => self.simulator.locked(open, time, parameters),
-            None if self.count == MOST_STEPS => {
+            None if self.count == TUNING.most_steps => {
                 SimulationError::TooManySteps { steps: self.count, step: *step, time, cause }
             }
             None => SimulationError::StepTooSmall { step: self.steps.h, time, cause, parameters },
@@ -216,7 +208,7 @@ impl<'s> Control<'s> {
         failing.iter().for_each(|&lane| self.steps.stepper.retire(lane..lane + 1));
         // Lanes beyond the samples repeat the last one.
         self.dropped.extend(failing.into_iter().filter(|&lane| lane < self.samples.len()));
-        self.steps.h = FIRST_STEP * self.output_step;
+        self.steps.h = TUNING.first_step * self.output_step;
         error
     }
 
@@ -231,7 +223,7 @@ impl<'s> Control<'s> {
             place_of(system, term, &written(&system.graph, term)),
             system[coordinate].name,
         );
-        SimulationError::TooManySteps { steps: MOST_CHATTERING, step, time, cause }
+        SimulationError::TooManySteps { steps: TUNING.most_chattering, step, time, cause }
     }
 
     /// Why a lane misses its tolerance: an equation that does not converge, or the acceleration that changes most.

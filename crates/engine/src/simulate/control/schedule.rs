@@ -6,6 +6,7 @@
 use super::integration::Integration;
 use serde::{Deserialize, Serialize};
 
+use super::tuning::TUNING;
 use crate::simulate::events::segments::Segments;
 
 /// Rows of output, and the steps that lead from row to row.
@@ -43,14 +44,11 @@ pub(super) struct LastSteps {
     pub rest: f64,
 }
 
-/// A remainder below this share of a step is rounding.
-const NO_REST: f64 = 1e-6;
-
 impl LastSteps {
     fn new(length: f64, step: f64) -> Self {
-        let whole = (length / step + NO_REST).floor();
+        let whole = (length / step + TUNING.no_rest).floor();
         let rest = length - whole * step;
-        let rests = usize::from(rest > NO_REST * step);
+        let rests = usize::from(rest > TUNING.no_rest * step);
         Self { whole: whole as usize, rests, rest: if rests > 0 { rest } else { 0.0 } }
     }
 }
@@ -59,7 +57,7 @@ impl LastSteps {
 fn rows(duration: f64, output_step: f64) -> usize {
     let ratio = duration / output_step;
     let whole = (ratio * (1.0 + 1e-12) + 1e-9).floor();
-    whole as usize + usize::from(ratio - whole > NO_REST) + 1
+    whole as usize + usize::from(ratio - whole > TUNING.no_rest) + 1
 }
 
 impl Schedule {
@@ -72,7 +70,7 @@ impl Schedule {
     fn of_steps(end: f64, output_step: f64, step: f64, per_row: usize) -> Self {
         let rows = rows(end, output_step);
         let before = end - rows.saturating_sub(2) as f64 * output_step;
-        let last = if (before - output_step).abs() <= NO_REST * output_step {
+        let last = if (before - output_step).abs() <= TUNING.no_rest * output_step {
             LastSteps { whole: per_row, rests: 0, rest: 0.0 }
         } else {
             LastSteps::new(before, step)

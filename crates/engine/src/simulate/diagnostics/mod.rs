@@ -9,6 +9,7 @@ mod overlap;
 mod overlapping;
 mod parted;
 mod singular;
+pub(crate) mod tuning;
 mod undetermined;
 
 pub use cannot_close::OpenConstraint;

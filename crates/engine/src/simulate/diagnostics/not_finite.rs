@@ -2,14 +2,12 @@
 
 use symdiff::{Binary, Expr, Graph, Node, Unary};
 
+use super::tuning::TUNING;
 use crate::assemble::System;
 use crate::compile::Layout;
 use crate::grammar::TimeOrder;
 use crate::grammar::motions::derivative_name;
 use crate::simulate::motion_values::motion_values;
-
-/// Operations of a term that are written out; deeper ones are left out.
-const DEEPEST: usize = 4;
 
 /// A term that is no finite number, and the equation that it is part of: `` `1/t` in the motion of rod.angle ``. `None`
 /// where all equations have finite values. `state` holds the values of the layout's registers.
@@ -51,7 +49,7 @@ pub fn place_of(system: &System, of: Expr, formula: &str) -> String {
 
 /// A term as a formula.
 pub fn written(graph: &Graph, expr: Expr) -> String {
-    written_to(graph, expr, DEEPEST)
+    written_to(graph, expr, TUNING.deepest_term)
 }
 
 fn written_to(graph: &Graph, expr: Expr, depth: usize) -> String {

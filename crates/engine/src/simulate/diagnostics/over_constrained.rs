@@ -5,19 +5,10 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use super::tuning::TUNING;
 use crate::assemble::{ResidualUnit, System};
 use crate::compile::StartProgram;
-use crate::simulate::start::{DEPENDENT, dependent_rows, jacobian_rows};
-
-/// Share of a row below which another has no part in it.
-const PART: f64 = 1e-6;
-
-/// Share of the coordinates' scales by which the state is moved off a position of its own.
-const APART: f64 = 0.37;
-
-/// Most constraints of which the joints that fix one another are looked for: the search takes their number to the third
-/// power.
-const MOST: usize = 400;
+use crate::simulate::start::{self, dependent_rows, jacobian_rows};
 
 /// Coordinates, constraints, and which of these the others imply, near a state (the layout's registers); `None` where
 /// all can hold.
@@ -26,14 +17,14 @@ pub fn over_constrained(system: &System, start: &StartProgram, near: &[f64]) -> 
     for (index, register) in start.layout.q.clone().enumerate() {
         // Additive recurrence: evenly spread, the same on every machine.
         let direction = 2.0 * ((index + 1) as f64 * 0.618_033_988_749_895).fract() - 1.0;
-        state[register] += APART * system.coordinates[index].scale * direction;
+        state[register] += TUNING.off_position * system.coordinates[index].scale * direction;
     }
     let is_given = |index: usize| system.start.position[index].is_some();
     let rows: Vec<Vec<(usize, f64)>> = jacobian_rows(system, start, &state)
         .into_iter()
         .map(|row| row.into_iter().filter(|(index, _)| !is_given(*index)).collect())
         .collect();
-    let dependent = dependent_rows(&rows, DEPENDENT);
+    let dependent = dependent_rows(&rows, start::tuning::TUNING.dependent_row);
     let &first = dependent.first()?;
     let (coordinates, constraints) = (system.q.len(), system.lambda.len());
     let given = match (0..coordinates).filter(|&index| is_given(index)).count() {
@@ -44,7 +35,7 @@ pub fn over_constrained(system: &System, start: &StartProgram, near: &[f64]) -> 
         "{coordinates} coordinates{given}, {constraints} constraints: over-constrained by {}",
         in_words(dependent.len())
     );
-    if constraints <= MOST {
+    if constraints <= TUNING.most_constraints {
         text += &format!("; {}", who_fixes(system, &rows, first));
     }
     Some(text)
@@ -63,11 +54,11 @@ fn who_fixes(system: &System, rows: &[Vec<(usize, f64)>], constraint: usize) -> 
     let shares = match columns.as_slice() {
         [] => DVector::zeros(0),
         columns => {
-            let solution = DMatrix::from_columns(columns).svd(true, true).solve(&own, PART);
+            let solution = DMatrix::from_columns(columns).svd(true, true).solve(&own, TUNING.part_of_row);
             solution.unwrap_or_else(|_| DVector::zeros(columns.len()))
         }
     };
-    let has_part = |&row: &usize| (shares[row] * columns[row].norm()).abs() > PART * own.norm();
+    let has_part = |&row: &usize| (shares[row] * columns[row].norm()).abs() > TUNING.part_of_row * own.norm();
     let parts: Vec<usize> = others.into_iter().filter(has_part).collect();
     let info = &system.constraints[constraint];
     // A rotation that two joints fix is what engineers call by its name.

@@ -1,14 +1,9 @@
 //! Surfaces that overlap more deeply than their contact can tell, or that pass through one another within a step.
 
+use super::tuning::TUNING;
 use crate::compile::SwitchProgram;
 use crate::simulate::control::SwitchWatch;
 use crate::simulate::step::Stepper;
-
-/// Of the deepest overlap, what is left where nothing has a nearest side any more.
-const NOTHING_LEFT: f64 = 0.02;
-
-/// Of the deepest overlap, the distance at which surfaces that passed each other would but have grazed.
-const GRAZES: f64 = 0.9;
 
 /// Two surfaces that a contact does not hold apart any more.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -59,14 +54,14 @@ impl<'s> OverlapWatch<'s> {
             let left = self.watch.ends(self.contacts + contact, lane);
             let deepest = left[1][0] - gap_after;
             let found = |depth| TooDeep { contact, time: end, depth, deepest };
-            if left[1][0] < NOTHING_LEFT * deepest {
+            if left[1][0] < TUNING.nothing_left * deepest {
                 return Some(found(Some(-gap_after)));
             }
             let nearest = nearest(left, h).filter(|_| !is_divided)?;
             let touched = gap < 0.0 || gap_after < 0.0;
             match () {
-                () if touched && nearest < NOTHING_LEFT * deepest => Some(found(Some(deepest - nearest))),
-                () if !touched && nearest < GRAZES * deepest => Some(found(None)),
+                () if touched && nearest < TUNING.nothing_left * deepest => Some(found(Some(deepest - nearest))),
+                () if !touched && nearest < TUNING.grazes * deepest => Some(found(None)),
                 () => None,
             }
         });

@@ -2,15 +2,9 @@
 
 use symdiff::Expr;
 
+use super::tuning::TUNING;
 use crate::simulate::motion_values::motion_values;
 use crate::simulate::simulator::Simulator;
-
-/// Time over which the change of a gap's rate is taken, s.
-const MOMENT: f64 = 1e-6;
-
-/// A contact is in balance with other forces where its gap accelerates by less than this share of its force over the
-/// mass of all bodies.
-const UNBALANCED: f64 = 0.5;
 
 /// The contacts whose surfaces overlap at the nominal start by more than other forces press them together, and by how
 /// much, m. In an equilibrium none does.
@@ -31,13 +25,13 @@ pub fn overlapping(simulator: &Simulator) -> Vec<(String, f64)> {
     };
     let mut later = state.clone();
     for (value, rate) in layout.q.clone().chain(layout.v.clone()).zip(layout.v.clone().chain(layout.w.clone())) {
-        later[value] += MOMENT * state[rate];
+        later[value] += TUNING.moment_of_rate * state[rate];
     }
     let (now, later) = (values(state), values(&later));
     let of_contact = |(name, (now, later)): (&String, (&[f64], &[f64]))| {
         let [gap, rate, force] = now else { return None };
-        let acceleration = (later[1] - rate) / MOMENT;
-        let is_thrown = acceleration > UNBALANCED * force.abs() / system.mass_of_bodies;
+        let acceleration = (later[1] - rate) / TUNING.moment_of_rate;
+        let is_thrown = acceleration > TUNING.overlapping_unbalanced * force.abs() / system.mass_of_bodies;
         (*gap < 0.0 && is_thrown).then(|| (name.clone(), -gap))
     };
     names.into_iter().zip(now.chunks_exact(3).zip(later.chunks_exact(3))).filter_map(of_contact).collect()

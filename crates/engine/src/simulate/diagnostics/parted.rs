@@ -3,19 +3,13 @@
 
 use symdiff::Expr;
 
+use super::tuning::TUNING;
 use crate::assemble::{ConstraintId, ResidualUnit};
 use crate::compile::Layout;
 use crate::simulate::error::SimulationError;
 use crate::simulate::motion_values::motion_values;
 use crate::simulate::residual_text::residual_text;
 use crate::simulate::simulator::Simulator;
-
-/// A residual beyond this is open, for an angle of 1 rad or the length of the model. Schemes that fulfil velocities
-/// drift by less.
-const OPEN: f64 = 1e-4;
-
-/// Times in s at which constraints are compared, to find whether they depend on the time.
-const TIMES: [f64; 3] = [0.0, 0.317, 1.93];
 
 /// A constraint that has opened.
 #[derive(Clone, Debug)]
@@ -49,7 +43,7 @@ impl<'s> PartingWatch<'s> {
         if constraints.is_empty() {
             return None;
         }
-        let [first, others @ ..] = TIMES.map(|time| values(simulator, layout, all, &state, time));
+        let [first, others @ ..] = TUNING.tried_times.map(|time| values(simulator, layout, all, &state, time));
         let changes = others.iter().any(|values| values != &first);
         changes.then_some(Self { simulator, layout, constraints, residuals, state, found: None })
     }
@@ -64,7 +58,7 @@ impl<'s> PartingWatch<'s> {
         let residuals = values(self.simulator, self.layout, &self.residuals, &self.state, time);
         self.found = self.constraints.iter().zip(residuals).find_map(|(&constraint, residual)| {
             let size = if system[constraint].unit == ResidualUnit::Length { system.length } else { 1.0 };
-            (residual.abs() > OPEN * size).then_some(Parted { constraint, time, residual })
+            (residual.abs() > TUNING.open_residual * size).then_some(Parted { constraint, time, residual })
         });
     }
 

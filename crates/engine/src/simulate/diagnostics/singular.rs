@@ -5,28 +5,11 @@
 //! independent constraint is therefore sought on positions interpolated between the steps. Its independence vanishes in
 //! a singular configuration, and stays positive where the mechanism only comes near to one.
 
+use super::tuning::TUNING;
 use crate::assemble::ConstraintId;
 use crate::simulate::simulator::Simulator;
-use crate::simulate::start::{DEPENDENT, jacobian_rows, row_independence, usual_row_sizes};
+use crate::simulate::start::{self, jacobian_rows, row_independence, usual_row_sizes};
 use crate::simulate::step::Stepper;
-
-/// Steps are examined where a pivot has lost this much of the range between its size at the pivot samples (1e-10) and
-/// the smallest that is trusted (1).
-const SUSPECT: f64 = 1e-8;
-
-/// A constraint whose independence (scaled) is less than this depends on the others. Interpolated positions are off by
-/// (hω)⁴/384, 1e-6 for twenty steps a turn.
-const VANISHES: f64 = 1e-5;
-
-/// Divisions of the time between steps by the golden section: to 1e-8 of it.
-const DIVISIONS: usize = 40;
-
-/// An independence does not vanish in a time in which it would have to fall this many times as steeply as it does
-/// anywhere around.
-const STEEPER: f64 = 4.0;
-
-/// Most steps that are examined, so that the search stays short beside the run.
-const MOST: usize = 200;
 
 /// A singular configuration that was passed.
 #[derive(Clone, Debug, PartialEq)]
@@ -85,7 +68,7 @@ impl<'s> SingularWatch<'s> {
         stepper.copy_lane(0, &mut latest.state);
         let [first, middle, last] = &self.moments;
         let nearest = middle.pivot_loss > first.pivot_loss && middle.pivot_loss >= last.pivot_loss;
-        if nearest && middle.pivot_loss > SUSPECT && self.suspects < MOST {
+        if nearest && middle.pivot_loss > TUNING.suspect_pivot && self.suspects < TUNING.most_examined_steps {
             self.suspects += 1;
             self.passes.extend(self.weakest());
         }
@@ -105,8 +88,8 @@ impl<'s> SingularWatch<'s> {
         let inner = |from: (f64, f64), to: (f64, f64)| to.0 - golden * (to.0 - from.0);
         let (mut left, mut right) = (weakness(inner(from, to)), weakness(inner(to, from)));
         let mut steepest = slope(from, left).max(slope(left, right)).max(slope(right, to));
-        for _ in 0..DIVISIONS {
-            if left.1.min(right.1) > STEEPER * steepest * (to.0 - from.0) {
+        for _ in 0..TUNING.golden_sections {
+            if left.1.min(right.1) > TUNING.steepest_fall * steepest * (to.0 - from.0) {
                 return None;
             }
             if left.1 < right.1 {
@@ -119,7 +102,8 @@ impl<'s> SingularWatch<'s> {
             steepest = steepest.max(slope(from, left)).max(slope(right, to));
         }
         let time = 0.5 * (from.0 + to.0);
-        let vanished = self.independence(time).into_iter().filter(|(_, independent)| *independent < VANISHES);
+        let vanished =
+            self.independence(time).into_iter().filter(|(_, independent)| *independent < TUNING.vanishing_independence);
         let constraints: Vec<_> = vanished.map(|(constraint, _)| constraint).collect();
         (!constraints.is_empty()).then_some(SingularPass { time, constraints })
     }
@@ -129,7 +113,7 @@ impl<'s> SingularWatch<'s> {
         let rows = jacobian_rows(&self.simulator.system, &self.simulator.start, &self.between(time));
         let redundant = &self.simulator.mobility.redundant;
         let constraints = (0..rows.len()).map(ConstraintId::new);
-        let independence = constraints.zip(row_independence(&rows, &self.usual, DEPENDENT));
+        let independence = constraints.zip(row_independence(&rows, &self.usual, start::tuning::TUNING.dependent_row));
         independence.filter(|(constraint, _)| !redundant.contains(constraint)).collect()
     }
 

@@ -8,13 +8,11 @@ use nalgebra::{DMatrix, SymmetricEigen};
 use rustc_hash::FxHashMap;
 use symdiff::Expr;
 
+use super::tuning::TUNING;
 use crate::assemble::{OutputId, System};
 use crate::compile::{Layout, StartProgram};
 use crate::simulate::motion_values::motion_values;
 use crate::simulate::start::{Mobility, jacobian_rows, move_apart, spread};
-
-/// A derivative along a null vector below this share of the whole gradient is zero.
-const NEGLIGIBLE: f64 = 1e-7;
 
 /// Outputs that change when reactions are shifted along null vectors of Φ_qᵀ, at a state in general position.
 pub fn undetermined_outputs(
@@ -38,7 +36,8 @@ pub fn undetermined_outputs(
     let mut gradient = DMatrix::zeros(outputs.len(), system.lambda.len());
     places.into_iter().zip(numbers).for_each(|(index, number)| gradient[index] = number);
     let along = &gradient * shifts;
-    let depends = |output: &usize| along.row(*output).norm() > NEGLIGIBLE * gradient.row(*output).norm();
+    let depends =
+        |output: &usize| along.row(*output).norm() > TUNING.negligible_derivative * gradient.row(*output).norm();
     (0..outputs.len()).filter(depends).map(OutputId::new).collect()
 }
 

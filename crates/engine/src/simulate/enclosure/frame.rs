@@ -23,16 +23,11 @@ use nalgebra::{DMatrix, Matrix3, Vector3};
 use symdiff::Interval;
 use symdiff::taylor_model::{ModelSpace, up};
 
+use super::tuning::TUNING;
 use super::{EnclosureError, Gains};
 use crate::assemble::CoordinateId;
 use crate::certificate::matrix::Models;
 use crate::numerics::larger;
-
-/// Independent coordinates are chosen anew when another moves this many times as much.
-const OUTRUN: f64 = 2.0;
-
-/// Largest entry that V leaves above the diagonal.
-const OFF_DIAGONAL: f64 = 0.05;
 
 /// Units in which frames are made.
 #[derive(Clone, Debug)]
@@ -130,7 +125,7 @@ impl Frame {
         let columns = moved.part(space, 0..dimension, 0..2 * f).without_radii();
         let mut slow = self.follow(space, units, &columns)?;
         // At the centre: what another coordinate moves per movement of the independent ones.
-        if (0..n).any(|row| (0..f).any(|column| slow.at(row, column)[0].abs() > OUTRUN)) {
+        if (0..n).any(|row| (0..f).any(|column| slow.at(row, column)[0].abs() > TUNING.outrun)) {
             self.independent = pivots(&slow, n, f);
             self.inverse = None;
             slow = self.follow(space, units, &columns)?;
@@ -297,7 +292,7 @@ fn gap_map(gains: &Gains) -> (Matrix3<f64>, Matrix3<f64>) {
     let map = Matrix3::from_fn(|row, column| columns[column][row]);
     let (basis, triangle) = map.schur().unpack();
     let largest = [(0, 1), (0, 2), (1, 2)].map(|index| triangle[index].abs()).into_iter().fold(0.0, f64::max);
-    let shrink = (OFF_DIAGONAL / largest).min(1.0);
+    let shrink = (TUNING.off_diagonal / largest).min(1.0);
     (map, basis * Matrix3::from_diagonal(&Vector3::new(1.0, shrink, shrink * shrink)))
 }
 
@@ -310,7 +305,7 @@ mod tests {
     fn gaps_fade_in_absolute_values_too() {
         // The scheme's damping at infinite frequency, (1 + α)/(1 − α), and the off-diagonal remainder.
         for alpha in [-0.05, -0.1, -0.2, -1.0 / 3.0] {
-            let bound = (1.0 + alpha) / (1.0 - alpha) + 2.0 * OFF_DIAGONAL;
+            let bound = (1.0 + alpha) / (1.0 - alpha) + 2.0 * TUNING.off_diagonal;
             for h in [1e-2, 1e-3, 1e-5] {
                 let (map, fading) = gap_map(&Gains::new(Scheme::Hht { alpha }.coefficients(), h));
                 let fades = fading.try_inverse().unwrap() * map * fading;

@@ -25,9 +25,10 @@
 //! into the next frame, and y.
 
 mod frame;
-mod motion;
+pub(super) mod motion;
 mod start;
 mod step;
+pub(crate) mod tuning;
 
 use symdiff::taylor_model::ModelSpace;
 use symdiff::{Interval, ModelMemory};
@@ -40,10 +41,7 @@ use crate::certificate::{Certified, Equations};
 use crate::compile::{AtStart, Coefficients, EquationsProgram, Tapes, compile_equations, list_equations};
 use frame::{Frame, Units};
 pub use motion::{MotionEnclosure, MotionSpaces};
-
-/// Time that the motion's velocities are measured in, beside positions, s: only the shape of the remainder depends on
-/// it.
-const MOTION_TIME: f64 = 0.1;
+use tuning::TUNING;
 
 /// Why an enclosure fails.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -218,7 +216,7 @@ impl<'s> Enclosure<'s> {
         let lengths = || simulator.system.coordinates.iter().map(|coordinate| coordinate.scale);
         let scale: Vec<f64> =
             [1.0, h, h * h].into_iter().flat_map(|time| lengths().map(move |length| unit(length / time))).collect();
-        let units = Units { scale, step: h, motion: unit(MOTION_TIME / h) };
+        let units = Units { scale, step: h, motion: unit(TUNING.motion_time / h) };
         let gains = Gains::new(coefficients, h);
         let (tangent, push, independent) = start::tangent(simulator, program, space, &mut memory)?;
         let frame = Frame::new(space, &units, &gains, &tangent, &push, independent);

@@ -3,16 +3,11 @@
 use symdiff::taylor_model::up;
 use symdiff::{Interval, ModelMemory};
 
+use super::tuning::TUNING;
 use super::{Enclosure, EnclosureError, Gains, NextGains};
 use crate::certificate::krawczyk::{self, Image};
 use crate::certificate::matrix::{Bounds, Models};
 use crate::numerics::larger;
-
-/// Most corrections of X; the residual that is left is bounded in any case.
-const MAX_CORRECTIONS: usize = 4;
-
-/// A correction below this (of a position, in its unit) is rounding.
-const SETTLED: f64 = 1e-15;
 
 /// Derivatives of a step's equations F.
 struct Slopes {
@@ -186,14 +181,14 @@ impl<'s> Enclosure<'s> {
             }
         }
         let gain = self.gains.b.magnitude();
-        for _ in 0..MAX_CORRECTIONS {
+        for _ in 0..TUNING.max_corrections {
             let mut correction = inverse.approximate_times(space, &self.residual());
             correction.negate();
             solution.add_approximately(&correction);
             self.place(&solution, None);
             let sizes = correction.bounds(space);
             let scaled = sizes.entries()[..n].iter().zip(&self.units.scale).map(|(size, scale)| gain * size / scale);
-            if scaled.fold(0.0, larger) < SETTLED {
+            if scaled.fold(0.0, larger) < TUNING.settled_correction {
                 break;
             }
         }

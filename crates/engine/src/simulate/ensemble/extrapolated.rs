@@ -21,6 +21,7 @@ use super::reduction::Channel;
 use super::row_closure::{JetClosure, RowClosure};
 use super::run::EnsembleRun;
 use super::tiling::put_lanes;
+use super::tuning::TUNING;
 use crate::numerics::Sample;
 use crate::simulate::control::{Schedule, Steps};
 use crate::simulate::diagnostics::{OpenConstraint, SingularPass, TooDeep};
@@ -30,9 +31,6 @@ use crate::simulate::interruption::Interruption;
 use crate::simulate::sampling::Instants;
 use crate::simulate::simulator::Simulator;
 use crate::simulate::step::Counters;
-
-/// Samples whose rows are closed together.
-const WIDTH: usize = 32;
 
 /// Weights of the levels, the coarsest first.
 pub fn weights(levels: usize) -> Vec<f64> {
@@ -90,7 +88,7 @@ impl<'s> ExtrapolatedRun<'s> {
             simulator,
             levels: (0..levels as u32).map(of_level).collect::<Result<_, _>>()?,
             weights: weights(levels),
-            closures: samples.chunks(WIDTH).map(closure).collect::<Result<_, _>>()?,
+            closures: samples.chunks(TUNING.extrapolated_width).map(closure).collect::<Result<_, _>>()?,
             samples: samples.len(),
             values: vec![Vec::new(); levels],
             motion: Vec::new(),
@@ -149,16 +147,16 @@ impl<'s> Integrator<'s> for ExtrapolatedRun<'s> {
             .par_iter_mut()
             .enumerate()
             .map(|(index, closure)| {
-                let lanes = Lanes { motion, samples, first: index * WIDTH };
+                let lanes = Lanes { motion, samples, first: index * TUNING.extrapolated_width };
                 closed(closure, schedule, rows.clone(), observed, lines, lanes)
             })
             .collect();
         into.clear();
         into.resize(rows.len() * lines * samples, 0.0);
         for (index, values) in parts.iter().enumerate() {
-            let first = index * WIDTH;
+            let first = index * TUNING.extrapolated_width;
             let width = self.closures[index].tile().width();
-            put_lanes(values, width, first..(first + WIDTH).min(samples), into, samples);
+            put_lanes(values, width, first..(first + TUNING.extrapolated_width).min(samples), into, samples);
         }
         stops
     }

@@ -3,6 +3,7 @@
 use symdiff::jet::JetSpace;
 use symdiff::{JetMemory, Tile};
 
+use super::tuning::TUNING;
 use crate::compile::{StartProgram, Tapes};
 use crate::simulate::error::SimulationError;
 use crate::simulate::simulator::Simulator;
@@ -60,16 +61,13 @@ pub(super) fn add_correction(memory: &mut JetMemory, unknowns: impl Iterator<Ite
     }
 }
 
-/// Further corrections of a start that is nearest to rest.
-const LEAST_SQUARES_CORRECTIONS: usize = 10;
-
 /// Makes the jet of the start consistent. Its constant terms are consistent already, and every Newton correction in
 /// jets doubles the number of orders that are.
 fn consistent(simulator: &Simulator, memory: &mut JetMemory, order: usize, first_step: f64) {
     let start = &simulator.start;
     let layout = &start.layout;
     // Least squares converge linearly, though fast.
-    let open = if start.open.is_any() { LEAST_SQUARES_CORRECTIONS } else { 0 };
+    let open = if start.open.is_any() { TUNING.least_squares_corrections } else { 0 };
     let corrections = corrections(order) + open;
     memory.run(start.sample());
     memory.run(start.given());

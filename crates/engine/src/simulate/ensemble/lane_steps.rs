@@ -7,15 +7,13 @@
 
 use symdiff::Tile;
 
+use super::tuning::TUNING;
 use crate::compile::Tapes;
-use crate::simulate::control::{Adaptive, Controller, MOST_CHANGE, SwitchWatch};
+use crate::simulate::control::{self, Adaptive, Controller, SwitchWatch};
 use crate::simulate::features::FeatureWatch;
 use crate::simulate::interruption::Interruption;
 use crate::simulate::simulator::Simulator;
 use crate::simulate::step::{StepFailure, Stepper};
-
-/// Most steps of a sample within one of the schedule.
-const MOST_STEPS: usize = 200_000;
 
 /// Keeps every lane of a tile within the tolerance.
 #[derive(Debug)]
@@ -90,7 +88,8 @@ impl<'s> LaneSteps<'s> {
             let size = if crossing.is_some() { error.whole } else { error.size };
             let ratio = self.controller.error_ratio(size, h);
             let features = self.features.as_mut().filter(|_| converged[lane] && h > self.controller.event());
-            let passes = features.is_some_and(|features| features.change(stepper, lane, h, end, MOST_CHANGE));
+            let passes = features
+                .is_some_and(|features| features.change(stepper, lane, h, end, control::tuning::TUNING.most_change));
             let within =
                 converged[lane] && !passes && ratio <= 1.0 && crossing.is_none_or(|crossing| crossing.is_at_the_end());
             let attached = self.alone[lane].as_ref().is_none_or(|alone| alone.h >= h && !alone.has_switched());
@@ -166,7 +165,7 @@ impl<'s> LaneSteps<'s> {
         let counted = alone.stepper.counters();
         alone.stepper.refine(stepper.refines());
         let (mut time, mut sum, mut reached) = (start, 0.0, false);
-        for step in 0..MOST_STEPS {
+        for step in 0..TUNING.most_lane_steps {
             if self.interruption.is_asked_in(step + 1) {
                 self.is_cut = true;
                 break;

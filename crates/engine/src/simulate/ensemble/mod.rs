@@ -5,12 +5,13 @@ mod jet_states;
 mod jets;
 mod lane_steps;
 mod observed;
-mod reduction;
+pub(super) mod reduction;
 mod row_accelerations;
 mod row_closure;
 mod run;
 mod switch_extents;
 mod tiling;
+pub(crate) mod tuning;
 
 pub(crate) use extrapolated::weights;
 pub use extrapolated::{ExtrapolatedJets, ExtrapolatedRun};

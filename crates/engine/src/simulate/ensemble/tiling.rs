@@ -2,23 +2,14 @@
 
 use std::ops::Range;
 
+use super::tuning::TUNING;
 use symdiff::WIDTHS;
-
-/// Widest tile in use: a wider one's memory would leave the first-level cache.
-const WIDEST: usize = 32;
-
-/// Most memory of a tile, so that a large mechanism's stays in the second-level cache. Tiles are narrower then, down to
-/// [`NARROWEST`], where dispatch costs more than memory does.
-const TILE_MEMORY: usize = 2 << 20;
-
-/// See [`TILE_MEMORY`].
-const NARROWEST: usize = 8;
 
 /// Tiles of `samples` with this many registers each for `threads`: (first, count, width). Results do not depend on the
 /// tiling.
 pub(in crate::simulate) fn tiles(samples: usize, registers: usize, threads: usize) -> Vec<(usize, usize, usize)> {
-    let fits = TILE_MEMORY / (registers * size_of::<f64>()).max(1);
-    let share = samples.div_ceil(threads).min(fits.clamp(NARROWEST, WIDEST));
+    let fits = TUNING.tile_memory / (registers * size_of::<f64>()).max(1);
+    let share = samples.div_ceil(threads).min(fits.clamp(TUNING.narrowest_tile, TUNING.widest_tile));
     let width = WIDTHS.into_iter().rev().find(|&width| width <= share).unwrap_or(1);
     let mut tiles = Vec::new();
     let mut first = 0;

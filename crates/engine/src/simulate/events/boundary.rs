@@ -8,6 +8,7 @@ use rayon::prelude::*;
 
 use super::path::{Lost, Path, PathStep};
 use super::segments::{Boundary, Event, Word};
+use super::tuning::TUNING;
 use crate::numerics::LeastSquares;
 
 /// The surfaces between words, each with the margins of its samples, which `margins` gives.
@@ -102,14 +103,11 @@ fn until_other(path: &mut Path, mut step: PathStep, switch: usize, end: f64) -> 
     Ok(end)
 }
 
-/// A sample at a share of the largest margin weighs as one on the surface over this share and it.
-const NEAR_SURFACE: f64 = 0.02;
-
 /// Value of each ξ at which margins are zero while the others are nominal, by parabolas in each.
 pub(super) fn grazed_at(xi: &[Vec<f64>], nominal: &[f64], margins: &[f64]) -> Vec<Option<f64>> {
     let k = nominal.len();
     let size = margins.iter().fold(0.0, |size, margin| margin.abs().max(size));
-    let weights = margins.iter().map(|margin| (margin.abs() / size + NEAR_SURFACE).recip()).collect();
+    let weights = margins.iter().map(|margin| (margin.abs() / size + TUNING.near_surface).recip()).collect();
     let terms = |xi: &[f64]| -> Vec<f64> {
         std::iter::once(1.0).chain(xi.iter().copied()).chain(xi.iter().map(|xi| xi * xi)).collect()
     };

@@ -2,12 +2,7 @@
 
 use super::path::{Lost, Path};
 use super::segments::{Event, Segments, Word};
-
-/// Motions are followed so many times as long as they are asked for, so that an event beside the end is met by all.
-pub(super) const REACH: f64 = 1.25;
-
-/// Most events of a motion.
-pub(super) const MOST_EVENTS: usize = 128;
+use super::tuning::TUNING;
 
 /// The events of one sample, and the ends of its steps between them.
 #[derive(Clone, Debug, Default)]
@@ -22,7 +17,7 @@ impl Followed {
     /// Follows a sample up to a time, or as far as that can be done.
     pub fn to(mut path: Path, reach: f64) -> Self {
         let (mut followed, mut ends) = (Self::default(), Vec::new());
-        while followed.known_to < reach && followed.events.len() < MOST_EVENTS {
+        while followed.known_to < reach && followed.events.len() < TUNING.most_events {
             let Ok(step) = path.step(reach) else { break };
             path.go_on(step);
             ends.push(step.end);

@@ -9,8 +9,9 @@ use symdiff::jet::JetSpace;
 
 use super::followed::Spelled;
 use super::nodes;
-use super::path::{BEYOND, CORRECTIONS, LOCATED, Path, ROUNDED};
+use super::path::Path;
 use super::segments::Segments;
+use super::tuning::TUNING;
 use crate::compile::{SwitchProgram, Tapes};
 use crate::numerics::{Sample, SegmentMotions};
 use crate::simulate::ensemble::{JetBox, JetClosure};
@@ -93,16 +94,16 @@ pub fn segment_jets(
         }
         let mut nodes = pass(&mut motion, &state, steps);
         let mut is_solved = event.is_none();
-        for _ in 0..CORRECTIONS {
+        for _ in 0..TUNING.corrections_of_instant {
             let Some(event) = event.filter(|_| !is_solved) else { break };
-            let change = watch.change(&motion.closure, event.switch, BEYOND * duration);
+            let change = watch.change(&motion.closure, event.switch, TUNING.beyond_event * duration);
             motion.length.iter_mut().zip(&change).for_each(|(length, change)| *length += change);
             nodes = pass(&mut motion, &state, steps);
             let (first, others) = (change[0].abs(), change[1..].iter().fold(0.0, |most: f64, own| most.max(own.abs())));
             if first.is_nan() {
                 return Ok(None);
             }
-            is_solved = first <= LOCATED * duration && others <= ROUNDED * duration;
+            is_solved = first <= TUNING.located * duration && others <= TUNING.rounded_instant * duration;
         }
         if !is_solved {
             return Ok(None);

@@ -1,13 +1,7 @@
 //! Where a function of the time changes its sign within a step.
 
+use super::tuning::TUNING;
 use crate::numerics::bisected;
-
-/// A cubic's first root is searched for at this many points between the ends of a step, and then by bisection.
-const POINTS: usize = 16;
-const BISECTIONS: usize = 50;
-
-/// A crossing after this share of a step is at its end.
-const AT_THE_END: f64 = 0.999;
 
 /// A switch that changed its sign in a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,7 +15,7 @@ pub struct Crossing {
 impl Crossing {
     /// Whether the step ends with it, so that nothing that it begins is stepped over.
     pub fn is_at_the_end(&self) -> bool {
-        !self.hidden && self.share >= AT_THE_END
+        !self.hidden && self.share >= TUNING.at_the_end
     }
 }
 
@@ -46,8 +40,8 @@ pub fn crossing([start, start_rate]: [f64; 2], [end, end_rate]: [f64; 2], h: f64
             + s * s * ((3.0 - 2.0 * s) * end - rest * h * end_rate)
     };
     let changed = |s: f64| cubic(s) * start <= 0.0;
-    let first = (1..=POINTS).map(|point| point as f64 / POINTS as f64).find(|&s| changed(s))?;
-    let share = bisected(first - 1.0 / POINTS as f64, first, BISECTIONS, changed);
+    let first = (1..=TUNING.root_points).map(|point| point as f64 / TUNING.root_points as f64).find(|&s| changed(s))?;
+    let share = bisected(first - 1.0 / TUNING.root_points as f64, first, TUNING.root_bisections, changed);
     Some(Crossing { share, hidden: !changes })
 }
 

@@ -22,6 +22,7 @@ mod saltation;
 pub(in crate::simulate) mod segments;
 mod stretched;
 mod tile;
+pub(crate) mod tuning;
 mod word;
 
 pub use jets::segment_jets;

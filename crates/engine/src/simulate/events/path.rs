@@ -7,64 +7,17 @@
 use symdiff::math;
 
 use super::segments::Event;
+use super::tuning::TUNING;
 use crate::compile::SwitchProgram;
 use crate::numerics::Sample;
 use crate::simulate::control::SwitchWatch;
 use crate::simulate::ensemble::RowClosure;
 use crate::simulate::error::SimulationError;
+use crate::simulate::explicit;
 use crate::simulate::explicit::movement::Movement;
 use crate::simulate::explicit::runge_kutta::RungeKutta;
 use crate::simulate::features::{FeatureWork, Features, Passage};
 use crate::simulate::simulator::Simulator;
-
-/// The first step and the longest, as shares of the duration.
-const FIRST_STEP: f64 = 1e-4;
-const LONGEST: f64 = 1.0 / 16.0;
-
-/// The smallest step, as a share of the duration.
-const SMALLEST: f64 = 1e-13;
-
-/// A crossing behind this share of a step, or so little beyond its end, is solved for by Newton's method; before it,
-/// the step is cut short first.
-const NEAR: f64 = 0.98;
-
-/// How far beyond an event a step ends, as a share of the duration, and how closely that is solved.
-pub(super) const BEYOND: f64 = 16.0 * f64::EPSILON;
-pub(super) const LOCATED: f64 = 4.0 * f64::EPSILON;
-
-/// Largest uncertainty of an event's instant by rounding of the switch, as a share of the duration.
-pub(super) const ROUNDED: f64 = 1e-9;
-
-/// Corrections of an event's instant.
-pub(super) const CORRECTIONS: usize = 12;
-
-/// A switch that stays within this share of its largest value crosses by rounding.
-const ZERO: f64 = 1e-13;
-
-/// Switches that cross so soon after an event, as a share of the duration, are a part of it.
-const SAME: f64 = 1e-10;
-
-/// Least share that a step is cut to at once where its error is large.
-const LEAST_SHARE: f64 = 0.3;
-
-/// Safety of the step size, and the limits of its change at once.
-const SAFETY: f64 = 0.9;
-const LEAST_FACTOR: f64 = 0.2;
-const LARGEST_FACTOR: f64 = 6.0;
-
-/// Share of a step over which the change of a rate is taken, and rates beside an extreme that are none, as a share of
-/// those at the step's ends.
-const FOR_BEND: f64 = 1e-3;
-const FLAT: f64 = 1e-7;
-
-/// Steps that are tried at most: without an event, since a smooth motion that takes more is stiff; after one, since a
-/// contact that stays closed takes as many as its spring asks for; and where words end.
-const MOST_STEPS: usize = 3000;
-const MOST_WITH_EVENTS: usize = 12_000;
-const MOST_BEHIND_WORDS: usize = 40_000;
-
-/// Of its length, a step that passes over what a force does in space is tried with this share.
-const PASSING_SHARE: f64 = 0.5;
 
 /// A motion that cannot be followed: it is stiff, not finite, or grazes a switch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -136,17 +89,17 @@ impl<'s> Path<'s> {
             sizes,
             duration,
             tolerance,
-            h: FIRST_STEP * duration,
+            h: TUNING.first_step * duration,
             event: 0.0,
             tries: 0,
-            most: MOST_STEPS,
+            most: TUNING.most_steps,
         })
     }
 
     /// The same with steps enough to go on where words end.
     #[must_use]
     pub fn behind_words(self) -> Self {
-        Self { most: MOST_BEHIND_WORDS, ..self }
+        Self { most: TUNING.most_steps_behind_words, ..self }
     }
 
     /// Takes a step that ends at `goal` at the latest, from which [`go_on`](Self::go_on) goes on.
@@ -159,19 +112,19 @@ impl<'s> Path<'s> {
         let mut cut: Option<(f64, usize)> = None;
         loop {
             self.tries += 1;
-            if self.tries > self.most || self.h < SMALLEST * self.duration {
+            if self.tries > self.most || self.h < TUNING.smallest_step * self.duration {
                 return Err(Lost);
             }
-            let step = self.h.min(LONGEST * self.duration);
+            let step = self.h.min(TUNING.longest_step * self.duration);
             let mut end = if begin + step * (1.0 + 1e-9) >= goal { goal } else { begin + step };
             let step = end - begin;
             let mut ratio = self.attempt(end);
             let crossing = self.crossing(begin, step);
-            if let Some((switch, share)) = crossing.filter(|(_, share)| *share < NEAR) {
+            if let Some((switch, share)) = crossing.filter(|(_, share)| *share < TUNING.near_end) {
                 self.closure.forget();
                 cut = Some(cut.map_or((self.h, switch), |(uncut, _)| (uncut, switch)));
                 // Where the step does not resolve what follows, its end says little of when that begins.
-                self.h = step * if ratio <= 1.0 { share } else { share.max(LEAST_SHARE) };
+                self.h = step * if ratio <= 1.0 { share } else { share.max(TUNING.least_share) };
                 continue;
             }
             if let Some((time, switch)) =
@@ -183,7 +136,7 @@ impl<'s> Path<'s> {
             }
             let near = |(_, switch): &(f64, usize)| {
                 let [value, rate] = self.watch.at_end(*switch, 0);
-                value * rate < 0.0 && (value / rate).abs() < (1.0 - NEAR) * step
+                value * rate < 0.0 && (value / rate).abs() < (1.0 - TUNING.near_end) * step
             };
             let switch = crossing.map(|(switch, _)| switch).or(cut.filter(near).map(|(_, switch)| switch));
             let mut event = None;
@@ -193,15 +146,17 @@ impl<'s> Path<'s> {
                     None => ratio = f64::INFINITY,
                 }
             }
-            let factor = SAFETY * math::pow(ratio.max(1e-12), -0.125);
+            let factor = explicit::tuning::TUNING.safety * math::pow(ratio.max(1e-12), -0.125);
             let passes_over = ratio <= 1.0 && self.passes_over(begin, end);
             if ratio > 1.0 || passes_over {
                 self.closure.forget();
                 self.h = step
                     * match ratio {
-                        _ if passes_over => PASSING_SHARE,
-                        _ if ratio.is_finite() => factor.clamp(LEAST_FACTOR, SAFETY),
-                        _ => LEAST_FACTOR,
+                        _ if passes_over => TUNING.passing_share,
+                        _ if ratio.is_finite() => {
+                            factor.clamp(explicit::tuning::TUNING.least_factor, explicit::tuning::TUNING.safety)
+                        }
+                        _ => explicit::tuning::TUNING.least_factor,
                     };
                 cut = None;
                 continue;
@@ -210,7 +165,9 @@ impl<'s> Path<'s> {
                 Some((uncut, _)) if event.is_some() => uncut,
                 // A step cut short at the goal is no reason against the longer one.
                 _ if end == goal && step < self.h => self.h,
-                _ => step * factor.clamp(LEAST_FACTOR, LARGEST_FACTOR),
+                _ => {
+                    step * factor.clamp(explicit::tuning::TUNING.least_factor, explicit::tuning::TUNING.largest_factor)
+                }
             };
             return Ok(PathStep { begin, end, event });
         }
@@ -221,15 +178,15 @@ impl<'s> Path<'s> {
     fn located(&mut self, switch: usize, begin: f64, mut end: f64) -> Option<(f64, f64, Option<Event>)> {
         let rises = self.watch.at_beginning(switch, 0)[0] < 0.0;
         let (mut ratio, mut is_located) = (f64::INFINITY, false);
-        for _ in 0..CORRECTIONS {
+        for _ in 0..TUNING.corrections_of_instant {
             let [value, rate] = self.watch.at_end(switch, 0);
             // Written so that an unknown rate ends it, too.
             if !(if rises { rate > 0.0 } else { rate < 0.0 }) {
                 return None;
             }
-            let change = BEYOND * self.duration - value / rate;
-            is_located = change.abs() <= ROUNDED * self.duration;
-            if change.abs() <= LOCATED * self.duration && ratio.is_finite() {
+            let change = TUNING.beyond_event * self.duration - value / rate;
+            is_located = change.abs() <= TUNING.rounded_instant * self.duration;
+            if change.abs() <= TUNING.located * self.duration && ratio.is_finite() {
                 break;
             }
             end += change;
@@ -263,14 +220,14 @@ impl<'s> Path<'s> {
     fn crossing(&self, begin: f64, step: f64) -> Option<(usize, f64)> {
         let counts = |(switch, share): &(usize, f64)| {
             let [start, end] = [self.watch.at_beginning(*switch, 0), self.watch.at_end(*switch, 0)];
-            let moves = start[0].abs().max(end[0].abs()) > ZERO * self.sizes[*switch];
-            moves && begin + share * step - self.event > SAME * self.duration
+            let moves = start[0].abs().max(end[0].abs()) > TUNING.zero_of_switch * self.sizes[*switch];
+            moves && begin + share * step - self.event > TUNING.same_event * self.duration
         };
         let found: Vec<(usize, f64)> =
             self.watch.crossings(0, step).map(|(switch, crossing)| (switch, crossing.share)).filter(counts).collect();
         let first = found.iter().map(|(_, share)| *share).fold(f64::INFINITY, f64::min);
         // Of those that cross at once, the first by number.
-        let at_once = |(_, share): &(usize, f64)| (share - first) * step <= SAME * self.duration;
+        let at_once = |(_, share): &(usize, f64)| (share - first) * step <= TUNING.same_event * self.duration;
         found.into_iter().find(at_once)
     }
 
@@ -281,7 +238,7 @@ impl<'s> Path<'s> {
 
     /// Change of a switch's rate with the time at the end of the step that was taken.
     pub fn bend(&mut self, step: PathStep, switch: usize) -> f64 {
-        let back = FOR_BEND * (step.end - step.begin);
+        let back = TUNING.share_for_bend * (step.end - step.begin);
         let [_, rate] = self.at_end(switch);
         self.attempt(step.end - back);
         let [_, before] = self.at_end(switch);
@@ -299,7 +256,7 @@ impl<'s> Path<'s> {
             return None;
         }
         let mut least = (step.end, f64::INFINITY);
-        for _ in 0..CORRECTIONS {
+        for _ in 0..TUNING.corrections_of_instant {
             let time = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);
             if !(time > step.begin && time < step.end) {
                 break;
@@ -309,7 +266,7 @@ impl<'s> Path<'s> {
             if value < least.1 {
                 least = (time, value);
             }
-            if rate.abs() <= FLAT * (first.abs() + last.abs()) {
+            if rate.abs() <= TUNING.flat_rate * (first.abs() + last.abs()) {
                 break;
             }
             // The end that stays counts half the next time.
@@ -330,7 +287,9 @@ impl<'s> Path<'s> {
         let mut found = |switch: usize| {
             let sign = self.at_end(switch)[0].signum();
             let (time, least) = self.least(step, switch, sign)?;
-            (least < -ZERO * self.sizes[switch] && time - self.event > SAME * self.duration).then_some((time, switch))
+            (least < -TUNING.zero_of_switch * self.sizes[switch]
+                && time - self.event > TUNING.same_event * self.duration)
+                .then_some((time, switch))
         };
         (0..count).filter_map(&mut found).min_by(|a, b| a.0.total_cmp(&b.0))
     }
@@ -362,7 +321,7 @@ impl<'s> Path<'s> {
         }
         if step.event.is_some() {
             self.event = step.end;
-            self.most = self.most.max(MOST_WITH_EVENTS);
+            self.most = self.most.max(TUNING.most_steps_with_events);
         }
         self.run.accept(&mut self.closure, step.end);
         self.movement = self.movement.clone().reaching(&self.start, &self.run.state, 1);

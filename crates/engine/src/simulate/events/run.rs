@@ -8,20 +8,16 @@ use super::followed::Spelled;
 use super::path::Path;
 use super::segments::{Boundary, Segments};
 use super::tile::{Lanes, SegmentTile};
+use super::tuning::TUNING;
 use crate::compile::SwitchProgram;
 use crate::numerics::{BoundaryMargins, CutMotions, Sample, SegmentMotions};
 use crate::simulate::control::{Schedule, Steps};
 use crate::simulate::ensemble::{Channel, Observed, Reduction, RowClosure, Stop, stops_of_lost};
 use crate::simulate::error::SimulationError;
+use crate::simulate::explicit;
 use crate::simulate::integrator::Integrator;
 use crate::simulate::interruption::Interruption;
 use crate::simulate::simulator::Simulator;
-
-/// Parts of a step at whose ends outputs are taken that are reduced to one number: between them they are cubics.
-const REDUCED: usize = 16;
-
-/// Samples whose segments are passed together.
-const WIDTH: usize = 16;
 
 /// The run of an ensemble of samples.
 #[derive(Debug)]
@@ -88,7 +84,7 @@ impl<'s> SegmentRun<'s> {
         let mut lanes: Vec<Lanes> = Vec::new();
         for word in (0..segments.words.len()).map(Some).chain([None]) {
             let indices: Vec<usize> = (0..samples.len()).filter(|&sample| spelled[sample].word == word).collect();
-            let at_once = indices.len().div_ceil(rayon::current_num_threads().max(1)).clamp(1, WIDTH);
+            let at_once = indices.len().div_ceil(rayon::current_num_threads().max(1)).clamp(1, TUNING.run_width);
             lanes.extend(indices.chunks(at_once).map(|indices| Lanes {
                 word: word.map(|word| &segments.words[word]),
                 indices: indices.to_vec(),
@@ -274,7 +270,9 @@ impl RowTile<'_> {
             let steps = &word.steps[recorded.number];
             let begins = std::iter::once(0.0).chain(steps.iter().copied());
             let of_step = |(begin, end): (f64, f64)| {
-                (0..=REDUCED).map(move |part| begin + (end - begin) * part as f64 / REDUCED as f64)
+                (0..=explicit::tuning::TUNING.places_of_reduced).map(move |part| {
+                    begin + (end - begin) * part as f64 / explicit::tuning::TUNING.places_of_reduced as f64
+                })
             };
             for share in begins.zip(steps.iter().copied()).flat_map(of_step) {
                 for lane in 0..width {

@@ -8,8 +8,9 @@
 use symdiff::{Adjoints, Tile};
 
 use super::followed::Followed;
-use super::path::{BEYOND, Path, ROUNDED};
+use super::path::Path;
 use super::segments::{Event, Segments};
+use super::tuning::TUNING;
 use crate::compile::{SwitchProgram, Tapes};
 use crate::numerics::Sample;
 use crate::simulate::adjoint::{StartAdjoints, add};
@@ -80,7 +81,7 @@ impl<'s> EventAdjoints<'s> {
         let tile = program.memory_for(start);
         let adjoints = Adjoints::new(&tile);
         let memory = StartAdjoints::new(simulator, simulator.free_closure()?, start);
-        let back = [2.0 * BEYOND, ROUNDED].map(|share| share * duration);
+        let back = [2.0 * TUNING.beyond_event, TUNING.rounded_instant].map(|share| share * duration);
         Ok(Some(Self { program, tile, adjoints, memory, events, back }))
     }
 

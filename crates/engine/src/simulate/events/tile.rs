@@ -9,9 +9,10 @@ use std::collections::VecDeque;
 
 use super::followed::Spelled;
 use super::nodes;
-use super::path::{BEYOND, CORRECTIONS, LOCATED, Path, PathStep, ROUNDED};
+use super::path::{Path, PathStep};
 use super::segments::{Segments, Word};
 use super::stretched::Stretched;
+use super::tuning::TUNING;
 use crate::compile::SwitchProgram;
 use crate::numerics::{STEP_NODES, Sample, step_weights};
 use crate::simulate::control::SwitchWatch;
@@ -191,12 +192,12 @@ impl<'s> SegmentTile<'s> {
         let mut solved = vec![event.is_none(); width];
         let steps = &word.steps[number];
         let mut nodes = self.pass(steps);
-        for _ in 0..CORRECTIONS {
+        for _ in 0..TUNING.corrections_of_instant {
             for lane in (0..width).filter(|&lane| !solved[lane]).collect::<Vec<_>>() {
                 let Some(event) = event else { continue };
                 let [value, rate] = self.watch.at_end(event.switch, lane);
-                let change = BEYOND * self.duration - value / rate;
-                solved[lane] = change.abs() <= LOCATED * self.duration || !change.is_finite();
+                let change = TUNING.beyond_event * self.duration - value / rate;
+                solved[lane] = change.abs() <= TUNING.located * self.duration || !change.is_finite();
                 if !solved[lane] {
                     self.motion.length[lane] += change;
                 }
@@ -210,7 +211,7 @@ impl<'s> SegmentTile<'s> {
             let is_off = |lane: &usize| {
                 let [value, rate] = self.watch.at_end(event.switch, *lane);
                 let off = (value / rate).abs();
-                off > ROUNDED * self.duration || off.is_nan()
+                off > TUNING.rounded_instant * self.duration || off.is_nan()
             };
             if let Some(lane) = (0..self.samples.len()).find(is_off) {
                 let time = self.motion.begin[lane];

@@ -3,34 +3,14 @@
 use rayon::prelude::*;
 
 use super::boundary::{boundaries, grazed_at, margins};
-use super::followed::{Followed, MOST_EVENTS, REACH};
+use super::followed::Followed;
 use super::path::Path;
 use super::segments::{Boundary, Event, Segments, Word, WordsEnd};
+use super::tuning::TUNING;
 use crate::numerics::{ParameterBox, Sample};
 use crate::simulate::error::SimulationError;
 use crate::simulate::sampling::Instants;
 use crate::simulate::simulator::Simulator;
-
-/// An event so close to the end, as a share of the duration, may be before it for other samples.
-const BESIDE: f64 = 0.02;
-
-/// Instants that differ by no more than this share of the duration are the same.
-const SAME: f64 = 1e-9;
-
-/// Samples after the first of which one has to meet an event.
-const DECIDING: usize = 8;
-
-/// Most words.
-const MOST_WORDS: usize = 6;
-
-/// Parameters, at most, of boxes with several words: each word costs a surrogate, and ranges of many parameters take
-/// long.
-const MOST_OF_PARTS: usize = 2;
-
-/// Motions are cut if their words can be followed for at least this share of the duration, or through so many events: a
-/// polynomial that is not cut there ends at the first of them.
-const WORTHWHILE: f64 = 0.25;
-const WORTHWHILE_EVENTS: usize = 8;
 
 /// The words of samples up to a time, if there are events at different instants; `None` where there are none, or the
 /// explicit method cannot follow them for a share of the time that is worthwhile.
@@ -51,17 +31,21 @@ pub fn segments_of(
     let may_end = !is_whole && samples.len() > 1;
     let kept = |sample: &Sample, followed: Followed| {
         let goes_on = || {
-            let has_many = may_end && followed.events.len() >= MOST_EVENTS;
+            let has_many = may_end && followed.events.len() >= TUNING.most_events;
             has_many && path(sample).is_ok_and(|path| path.behind_words().reaches(duration))
         };
         (followed.known_to >= duration || goes_on()).then_some(followed)
     };
-    let follow = |sample: &Sample| kept(sample, Followed::to(path(sample).ok()?, REACH * duration));
+    let follow = |sample: &Sample| kept(sample, Followed::to(path(sample).ok()?, TUNING.followed_share * duration));
     let Some((first, others)) = samples.split_first() else { return Ok(None) };
-    let Some(first) = kept(first, Followed::to(path(first)?, REACH * duration)) else { return Ok(None) };
+    let Some(first) = kept(first, Followed::to(path(first)?, TUNING.followed_share * duration)) else {
+        return Ok(None);
+    };
     // The first few, at the ends of the box, decide whether there is anything to cut.
     let mut all = vec![first];
-    for others in [&others[..DECIDING.min(others.len())], &others[DECIDING.min(others.len())..]] {
+    for others in
+        [&others[..TUNING.deciding_samples.min(others.len())], &others[TUNING.deciding_samples.min(others.len())..]]
+    {
         let Some(followed) = others.par_iter().map(follow).collect::<Option<Vec<Followed>>>() else { return Ok(None) };
         all.extend(followed);
         if all.iter().all(|followed| followed.before(duration) == 0) {
@@ -69,7 +53,7 @@ pub fn segments_of(
         }
     }
     let Some((horizon, end, found)) = within_budget(&all, duration) else { return Ok(None) };
-    if found.len() > 1 && (is_whole || domain.dimension() > MOST_OF_PARTS) || end.is_some() && is_whole {
+    if found.len() > 1 && (is_whole || domain.dimension() > TUNING.most_of_parts) || end.is_some() && is_whole {
         return Ok(None);
     }
     let (words, groups): (Vec<Word>, Vec<Vec<usize>>) = found.into_iter().unzip();
@@ -118,7 +102,7 @@ fn grouped(count: usize, are_alike: impl Fn(usize, usize) -> bool) -> Vec<Vec<us
 
 /// Whether motions are worth cutting that can be followed to a time and through so many events.
 fn is_worthwhile(reach: f64, events: usize, duration: f64) -> bool {
-    reach >= WORTHWHILE * duration || events >= WORTHWHILE_EVENTS
+    reach >= TUNING.worthwhile_share * duration || events >= TUNING.worthwhile_events
 }
 
 /// Indices of samples with the same events up to a time, group by group.
@@ -136,7 +120,7 @@ fn within_budget(all: &[Followed], duration: f64) -> Option<Found> {
     let shortest = all.iter().min_by(|a, b| a.known_to.total_cmp(&b.known_to))?;
     let is_whole = shortest.known_to >= duration;
     let whole = groups(all, duration);
-    if is_whole && whole.len() <= MOST_WORDS {
+    if is_whole && whole.len() <= TUNING.most_words {
         let is_one = whole.len() == 1;
         let word = |group: Vec<usize>| Some((shared(&members(&group), duration, is_one)?, group));
         return Some((duration, None, whole.into_iter().map(word).collect::<Option<_>>()?));
@@ -145,7 +129,7 @@ fn within_budget(all: &[Followed], duration: f64) -> Option<Found> {
     let spelled = |sample: usize, count: usize| all[sample].events[..count].iter().map(|(event, _)| *event);
     let of_count = |count: usize| {
         let groups = grouped(all.len(), |own, other| spelled(own, count).eq(spelled(other, count)));
-        (groups.len() <= MOST_WORDS).then_some((count, groups))
+        (groups.len() <= TUNING.most_words).then_some((count, groups))
     };
     let (count, groups) = (1..=fewest).rev().find_map(of_count)?;
     let horizon = all.iter().map(|followed| followed.events[count - 1].1).fold(duration, f64::min);
@@ -161,7 +145,7 @@ fn shared(all: &[&Followed], end: f64, is_one: bool) -> Option<Word> {
     // Instants that are the same in all samples are kinks in time, none in the parameters.
     let differs = |event: usize| {
         let times = || all.iter().map(|followed| followed.events[event].1);
-        times().fold(f64::NEG_INFINITY, f64::max) - times().fold(f64::INFINITY, f64::min) > SAME * end
+        times().fold(f64::NEG_INFINITY, f64::max) - times().fold(f64::INFINITY, f64::min) > TUNING.same_instant * end
     };
     if all.len() > 1 && is_one && !(0..count).any(differs) {
         return None;
@@ -190,12 +174,12 @@ fn of_extent(all: &[&Followed], count: usize, tail: Option<f64>, end: f64) -> Op
 
 /// Number of events that some motions are followed through, and the end of a last segment without one.
 fn extent(all: &[&Followed], end: f64) -> Option<(usize, Option<f64>)> {
-    let [least, most] = [1.0 - BESIDE, 1.0 + BESIDE].map(|share| {
+    let [least, most] = [1.0 - TUNING.beside_end, 1.0 + TUNING.beside_end].map(|share| {
         let counts = all.iter().map(|followed| followed.before(share * end));
         if share < 1.0 { counts.min() } else { counts.max() }
     });
     let (least, most) = (least?, most?);
-    let reach = REACH * end;
+    let reach = TUNING.followed_share * end;
     let are_known = |time: f64| all.iter().all(|followed| followed.known_to >= time);
     // Where an event is beside the end for some, all go on to the next that all have.
     let counts = || all.iter().map(|followed| followed.before(end));
@@ -225,9 +209,9 @@ mod tests {
         let event = |index: usize| Event { switch: 0, rises: index.is_multiple_of(2) };
         let events = times.iter().enumerate().map(|(index, &time)| (event(index), time)).collect();
         let begins = std::iter::once(0.0).chain(times.iter().copied());
-        let ends = times.iter().copied().chain([REACH]);
+        let ends = times.iter().copied().chain([TUNING.followed_share]);
         let steps = begins.zip(ends).map(|(begin, end)| vec![0.5 * (begin + end), end]).collect();
-        Followed { events, steps, known_to: REACH }
+        Followed { events, steps, known_to: TUNING.followed_share }
     }
 
     fn spelled(all: &[Followed]) -> Option<Word> {
@@ -247,7 +231,7 @@ mod tests {
         let word = spelled(&[followed(&[0.4, 0.99, 1.1]), followed(&[0.5, 1.01, 1.2])]).unwrap();
         assert_eq!((word.events.len(), word.tail, word.steps.len()), (3, None, 3));
         let word = spelled(&[followed(&[0.4, 0.99]), followed(&[0.5, 1.01])]).unwrap();
-        assert_eq!((word.events.len(), word.tail), (2, Some(REACH)));
+        assert_eq!((word.events.len(), word.tail), (2, Some(TUNING.followed_share)));
         // Behind the last event of both, and before the next of one.
         let word = spelled(&[followed(&[0.4, 0.99]), followed(&[0.5, 1.01, 1.2])]).unwrap();
         assert_eq!((word.events.len(), word.tail), (2, Some(0.5 * (1.01 + 1.2))));

@@ -8,6 +8,7 @@ use symdiff::Tile;
 
 use super::runge_kutta::RungeKutta;
 use super::tableau::{DENSE, Row, STAGES, TIMES, WEIGHTS, WITH_DENSE};
+use super::tuning::TUNING;
 use crate::simulate::adjoint::{LaneTerm, Path, RowAdjoints, StartAdjoints, Stepping, TileInputs, TileKernel, add};
 use crate::simulate::ensemble::{Needs, RowClosure};
 use crate::simulate::error::SimulationError;
@@ -84,9 +85,6 @@ pub(in crate::simulate) struct ExplicitRow {
     pub time: f64,
     pub terms: Vec<LaneTerm>,
 }
-
-/// Corrections that close a step's end: each squares its distance from the constraints.
-const CLOSING: usize = 2;
 
 /// Goes backwards over a path.
 #[derive(Debug)]
@@ -311,7 +309,7 @@ impl<'s> ExplicitAdjoints<'s> {
             self.add_rate(&mut next, h * weight, stage);
         }
         self.closures.set(end, layout.q.start, &next);
-        let closing = self.closures.close(CLOSING);
+        let closing = self.closures.close(TUNING.closing_corrections);
         self.closures.add(layout.q.start, adjoints);
         self.closures.pull_closing(&closing);
         adjoints.copy_from_slice(&self.closures.take(layout.q.start..layout.v.end));

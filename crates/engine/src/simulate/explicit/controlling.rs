@@ -3,15 +3,12 @@
 use super::movement::Movement;
 use super::run::{Tile, tiles};
 use super::runge_kutta::StepError;
+use super::tuning::TUNING;
 use crate::numerics::Sample;
 use crate::simulate::control::SwitchWatch;
 use crate::simulate::error::SimulationError;
 use crate::simulate::features::{FeatureWork, Features, Passage};
 use crate::simulate::simulator::Simulator;
-
-/// What functions of the positions may change by in a step, as a share of their range: rows of a long step see some of
-/// it.
-const MOST_PASSED: f64 = 0.75;
 
 /// Controlling samples in step.
 #[derive(Debug)]
@@ -52,7 +49,7 @@ impl<'s> Tiles<'s> {
                     width: tile.alive.len(),
                     lane,
                 };
-                features.change(passage, MOST_PASSED, &mut work)
+                features.change(passage, TUNING.most_passed, &mut work)
             })
         })
     }

@@ -20,6 +20,7 @@ mod run;
 pub(in crate::simulate) mod runge_kutta;
 mod steps;
 mod tableau;
+pub(crate) mod tuning;
 
 pub(in crate::simulate) use adjoint::{ExplicitAdjoints, ExplicitRow, ExplicitSteps};
 pub use jets::ExplicitJets;

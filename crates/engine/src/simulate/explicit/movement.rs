@@ -1,12 +1,7 @@
 //! How far a motion has gone, which errors of its steps count against: not how far it is from the origin.
 
+use super::tuning::TUNING;
 use crate::assemble::CoordinateInfo;
-
-/// What moves by less than this share of what moves most of its kind counts by that.
-const LEAST: f64 = 1e-3;
-
-/// What moves by less than this share of a coordinate's typical size is at rest.
-const REST: f64 = 1e-9;
 
 /// The farthest that each line of a state, positions and then velocities, has gone.
 #[derive(Clone, Debug)]
@@ -29,7 +24,7 @@ impl Movement {
             Some(if coordinate.is_state { 4 + index } else { 2 + kind(coordinate) })
         };
         let kinds = positions.chain(coordinates.iter().enumerate().map(rate)).collect();
-        let least = coordinates.iter().map(|coordinate| REST * coordinate.scale);
+        let least = coordinates.iter().map(|coordinate| TUNING.at_rest * coordinate.scale);
         let least = least.clone().chain(least.map(|least| least / duration)).collect();
         Self { farthest: vec![0.0; 2 * coordinates.len()], least, kinds }
     }
@@ -53,7 +48,7 @@ impl Movement {
             kind.into_iter().for_each(|kind| most[kind] = most[kind].max(farthest));
         }
         let size = |((&farthest, &least), &kind): ((&f64, &f64), &Option<usize>)| {
-            kind.map_or(f64::INFINITY, |kind| farthest.max(LEAST * most[kind]).max(least))
+            kind.map_or(f64::INFINITY, |kind| farthest.max(TUNING.least_movement * most[kind]).max(least))
         };
         self.farthest.iter().zip(&self.least).zip(&self.kinds).map(size).collect()
     }

@@ -4,6 +4,7 @@ use rayon::prelude::*;
 use symdiff::WIDTHS;
 
 use super::runge_kutta::{Motion, RungeKutta};
+use super::tuning::TUNING;
 use crate::numerics::Sample;
 use crate::simulate::control::{Schedule, Steps};
 use crate::simulate::diagnostics::PartingWatch;
@@ -13,12 +14,6 @@ use crate::simulate::integrator::Integrator;
 use crate::simulate::interruption::Interruption;
 use crate::simulate::sampling::Instants;
 use crate::simulate::simulator::Simulator;
-
-/// Samples whose states are advanced together.
-const WIDTH: usize = 32;
-
-/// Places in a step at which outputs are taken that are reduced to one number: between them they are cubics.
-const REDUCED: usize = 16;
 
 impl Motion for RowClosure<'_> {
     fn rate(&mut self, time: f64, state: &[f64], into: &mut [f64]) {
@@ -65,8 +60,8 @@ pub(super) fn tiles<'s>(
     samples: &[Sample],
     threads: usize,
 ) -> Result<Vec<Tile<'s>>, SimulationError> {
-    let at_once = samples.len().div_ceil(threads.max(1)).clamp(1, WIDTH);
-    let at_once = WIDTHS.into_iter().find(|&width| width >= at_once).unwrap_or(WIDTH);
+    let at_once = samples.len().div_ceil(threads.max(1)).clamp(1, TUNING.run_width);
+    let at_once = WIDTHS.into_iter().find(|&width| width >= at_once).unwrap_or(TUNING.run_width);
     let of_tile = |(index, samples): (usize, &[Sample])| {
         let width = WIDTHS.into_iter().find(|&width| width >= samples.len()).unwrap_or(samples.len());
         let start = simulator.assemble(width, 0.0, |lane| samples[lane.min(samples.len() - 1)].clone())?;
@@ -206,8 +201,8 @@ impl Tile<'_> {
             let mut stepped = |run: &mut RungeKutta, motion: &mut RowClosure, end: f64| {
                 if reduction.is_some() {
                     run.prepare_dense(motion, end);
-                    for part in 1..=REDUCED {
-                        let share = part as f64 / REDUCED as f64;
+                    for part in 1..=TUNING.places_of_reduced {
+                        let share = part as f64 / TUNING.places_of_reduced as f64;
                         run.interpolate(share, &mut between);
                         reduce(reduction, rows, alive, run.time + share * (end - run.time), &mut between);
                     }

@@ -4,36 +4,14 @@
 use symdiff::math;
 
 use super::controlling::Tiles;
+use super::tuning::TUNING;
 use crate::numerics::Sample;
-use crate::simulate::control::{Integration, Schedule};
+use crate::simulate::control::{self, Integration, Schedule};
 use crate::simulate::error::SimulationError;
 use crate::simulate::interruption::Interruption;
 use crate::simulate::sampling::Instants;
 use crate::simulate::simulator::Simulator;
 use crate::simulate::time_functions::{ResolvingSteps, TimeFunctions};
-
-/// The first step, as a share of the output step.
-const FIRST_STEP: f64 = 1e-2;
-
-/// Smallest step, as a share of the duration.
-const SMALLEST: f64 = 1e-12;
-
-/// A switch is located to this share of the duration, and a step that ends within this share of itself beyond one ends
-/// there.
-const LOCATED: f64 = 1e-10;
-const AT_THE_END: f64 = 1e-6;
-
-/// Where h times the largest eigenvalue is more than this, stability limits the step.
-const STABLE: f64 = 6.1;
-
-/// So many such steps, with no more than a few others between, are stiff.
-const STIFF_STEPS: usize = 15;
-const OTHERS: usize = 6;
-
-/// Safety of the step size, and the limits of its change at once.
-const SAFETY: f64 = 0.9;
-const LEAST_FACTOR: f64 = 0.2;
-const LARGEST_FACTOR: f64 = 6.0;
 
 /// Why the explicit method is not for a motion.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -86,7 +64,7 @@ pub fn explicit_schedule(
     let functions = functions.map(|functions| ResolvingSteps::new(functions, &simulator.system, most)).transpose();
     let Ok(mut functions) = functions else { return too_many };
     let instants = Instants::of(simulator);
-    let (mut ends, mut time, mut h) = (Vec::new(), 0.0, FIRST_STEP * output_step);
+    let (mut ends, mut time, mut h) = (Vec::new(), 0.0, control::tuning::TUNING.first_step * output_step);
     let (mut stiff, mut others) = (0, 0);
     // The step that a switch cut short.
     let mut uncut: Option<f64> = None;
@@ -98,7 +76,7 @@ pub fn explicit_schedule(
         if ends.len() == most {
             return too_many;
         }
-        if h < SMALLEST * duration {
+        if h < TUNING.smallest_step * duration {
             return Ok(Err(ExplicitObstacle::StepTooSmall { time }));
         }
         let resolved = match &mut functions {
@@ -112,30 +90,35 @@ pub fn explicit_schedule(
         };
         let end = if time + step * (1.0 + 1e-9) >= duration { duration } else { time + step };
         let worst = tiles.attempt(end, tolerance);
-        let factor = SAFETY * math::pow(worst.ratio.max(1e-12), -0.125);
-        let located = LOCATED * duration;
-        let early = tiles.crossing(step).filter(|&share| share < 1.0 - AT_THE_END && step > located);
+        let factor = TUNING.safety * math::pow(worst.ratio.max(1e-12), -0.125);
+        let located = TUNING.located * duration;
+        let early = tiles.crossing(step).filter(|&share| share < 1.0 - TUNING.at_the_end && step > located);
         if let Some(share) = early {
             tiles.reject();
             uncut = uncut.or(Some(h));
-            h = (step * share * (1.0 + 0.1 * AT_THE_END)).max(located).min(0.999 * step);
+            h = (step * share * (1.0 + 0.1 * TUNING.at_the_end)).max(located).min(0.999 * step);
             continue;
         }
         if worst.ratio > 1.0 {
             tiles.reject();
-            h = step * if worst.ratio.is_finite() { factor.clamp(LEAST_FACTOR, SAFETY) } else { LEAST_FACTOR };
+            h = step
+                * if worst.ratio.is_finite() {
+                    factor.clamp(TUNING.least_factor, TUNING.safety)
+                } else {
+                    TUNING.least_factor
+                };
             continue;
         }
         if tiles.pass_over(end) {
             return Ok(Err(ExplicitObstacle::PassesOver { time }));
         }
-        if worst.stiffness > STABLE {
+        if worst.stiffness > TUNING.largest_stable {
             (stiff, others) = (stiff + 1, 0);
         } else {
             others += 1;
-            stiff = if others >= OTHERS { 0 } else { stiff };
+            stiff = if others >= TUNING.others_between { 0 } else { stiff };
         }
-        if stiff == STIFF_STEPS {
+        if stiff == TUNING.stiff_steps {
             return Ok(Err(ExplicitObstacle::Stiff { time, step }));
         }
         tiles.accept(end);
@@ -147,7 +130,7 @@ pub fn explicit_schedule(
             continue;
         }
         // A step cut short at the end, or by a function of the time, is no reason against the longer one.
-        h = if step < h { h } else { step * factor.clamp(LEAST_FACTOR, LARGEST_FACTOR) };
+        h = if step < h { h } else { step * factor.clamp(TUNING.least_factor, TUNING.largest_factor) };
     }
     Ok(Ok(Schedule::passing(duration, output_step, ends, switches).taken(Integration::Explicit)))
 }

@@ -3,10 +3,8 @@
 use rustc_hash::{FxHashMap, FxHashSet};
 use symdiff::{Binary, Expr, Graph, Node, Unary};
 
+use super::tuning::TUNING;
 use crate::assemble::System;
-
-/// Operations of a function, counted as if nothing were shared; those of long chains of bodies are left out.
-const MOST_OPERATIONS: usize = 2000;
 
 /// On what an expression depends, and how many operations it has at most.
 #[derive(Clone, Copy, Default)]
@@ -38,7 +36,7 @@ pub(super) fn candidates(system: &System, graph: &mut Graph) -> Vec<Candidate> {
             of.operations = of.operations.saturating_add(known[&child].operations);
         }
         known.insert(expr, of);
-        if !of.on_positions || of.on_rates || of.operations > MOST_OPERATIONS {
+        if !of.on_positions || of.on_rates || of.operations > TUNING.most_operations {
             continue;
         }
         match node {
@@ -56,7 +54,7 @@ pub(super) fn candidates(system: &System, graph: &mut Graph) -> Vec<Candidate> {
     found.sort_unstable();
     let is_known = |condition: &Expr| {
         let of = known[condition];
-        of.on_positions && !of.on_rates && of.operations <= MOST_OPERATIONS
+        of.on_positions && !of.on_rates && of.operations <= TUNING.most_operations
     };
     let conditions = conditions(graph, &system.force, &reachable, is_known);
     let with_conditions = |uses: &[(Expr, Expr)]| Candidate {

@@ -7,6 +7,7 @@
 
 mod candidates;
 mod path;
+pub(crate) mod tuning;
 
 use symdiff::{Expr, Interval, Node, Ranges, Unary};
 
@@ -15,18 +16,7 @@ use self::path::Path;
 use super::step::Stepper;
 use crate::assemble::System;
 use crate::compile::Layout;
-
-/// Positions over which a function's whole range is taken.
-const FAR: f64 = 1e6;
-
-/// A function that changes by less than this, relative to its values, is constant.
-const CONSTANT: f64 = 1e-9;
-
-/// Of its whole range, what a function may go beyond its values at the ends of a fixed step.
-const BEYOND: f64 = 0.25;
-
-/// Of its whole range, what two functions may change by in a fixed step: together they may be a bump.
-const EDGE: f64 = 0.75;
+use tuning::TUNING;
 
 /// The functions of the positions in a mechanism's forces.
 #[derive(Clone, Debug)]
@@ -62,10 +52,6 @@ pub(super) struct Passage<'p> {
     pub lane: usize,
 }
 
-/// Halvings of a step's path where its enclosure shows a feature. Positions of bodies that move together are far apart
-/// in an enclosure of both, and near one another on the path.
-const HALVINGS: u32 = 6;
-
 /// Memory of enclosures.
 #[derive(Clone, Debug, Default)]
 pub(super) struct FeatureWork {
@@ -88,9 +74,9 @@ impl Features {
         let parameters = system.parameters.iter().map(|parameter| parameter.symbol);
         let symbols: Vec<Expr> =
             std::iter::once(system.time).chain(parameters).chain(system.q.iter().copied()).collect();
-        let far = Interval::new(-FAR, FAR);
+        let far = Interval::new(-TUNING.far, TUNING.far);
         let of_parameters = system.parameters.iter().map(|parameter| Interval::new(parameter.lower, parameter.upper));
-        let everywhere: Vec<Interval> = std::iter::once(Interval::new(0.0, FAR))
+        let everywhere: Vec<Interval> = std::iter::once(Interval::new(0.0, TUNING.far))
             .chain(of_parameters)
             .chain(std::iter::repeat_n(far, system.q.len()))
             .collect();
@@ -108,7 +94,7 @@ impl Features {
                     _ => ranges.enclose(&everywhere, &mut work).next().unwrap_or(Interval::ENTIRE),
                 };
                 let whole = range.upper() - range.lower();
-                (whole.is_finite() && whole > CONSTANT * range.magnitude()).then(|| {
+                (whole.is_finite() && whole > TUNING.constant_function * range.magnitude()).then(|| {
                     let conditions = Ranges::new(&graph, &symbols, &conditions);
                     (of, Function { ranges, whole, conditions })
                 })
@@ -148,7 +134,7 @@ impl Features {
                 function.is_used(symbols, values).then(|| function.over(symbols, values))
             };
             let ends = hull(used(begin, values), used(end, values));
-            let range = function.along(path, [0.0, 1.0], HALVINGS, part, values);
+            let range = function.along(path, [0.0, 1.0], TUNING.halvings_of_path, part, values);
             let Some(range) = range else { return false };
             edges += usize::from(function.is_edge(range));
             function.is_beyond(range, ends) || edges > 1
@@ -196,7 +182,7 @@ impl Function {
 
     /// Whether nothing can be hidden in a range.
     fn is_narrow(&self, range: Interval) -> bool {
-        range.upper() - range.lower() <= BEYOND * self.whole
+        range.upper() - range.lower() <= TUNING.beyond_ends * self.whole
     }
 
     /// Whether values on the way lie far beyond those at the ends; of no ends, far from one another.
@@ -205,12 +191,12 @@ impl Function {
             Some(ends) => (ends.lower() - range.lower()).max(range.upper() - ends.upper()),
             None => range.upper() - range.lower(),
         };
-        beyond > BEYOND * self.whole
+        beyond > TUNING.beyond_ends * self.whole
     }
 
     /// Whether values on the way make a step from one side of the whole range to the other.
     fn is_edge(&self, range: Interval) -> bool {
-        range.upper() - range.lower() > EDGE * self.whole
+        range.upper() - range.lower() > TUNING.edge_of_bump * self.whole
     }
 }
 

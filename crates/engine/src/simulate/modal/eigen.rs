@@ -7,20 +7,9 @@
 
 use nalgebra::{DMatrix, DVector, Schur, SymmetricEigen};
 
+use super::tuning::TUNING;
 use crate::numerics::{RowSpace, combined};
 use crate::simulate::statics::{Linearised, reduced};
-
-/// Damping, or a lack of symmetry, below this share is rounding.
-const NOTHING: f64 = 1e-13;
-
-/// Eigenvalues below this share of the largest frequency are zero.
-const STILL: f64 = 1e-7;
-
-/// How far inverse iteration is from the eigenvalue, so that its matrix has an inverse.
-const BESIDE: f64 = 1e-9;
-
-/// Share of M's trace that motions without mass get.
-const LEAST_MASS: f64 = 1e-12;
 
 /// A mode; shapes are per scale of the coordinates.
 #[derive(Clone, Debug, PartialEq)]
@@ -50,7 +39,7 @@ pub fn modes(linear: &Linearised) -> Option<Vec<Mode>> {
     }
     let [mut mass, damping, stiffness] =
         [&linear.mass, &linear.damping, &linear.stiffness].map(|matrix| reduced(matrix, &basis));
-    let least = LEAST_MASS * mass.trace();
+    let least = TUNING.least_mass * mass.trace();
     (0..basis.len()).for_each(|place| mass[(place, place)] += least);
     let reduced = Reduced { mass: symmetric(&mass), damping, stiffness, basis };
     let undamped = reduced.undamped()?;
@@ -76,7 +65,7 @@ impl Reduced {
     fn is_undamped(&self) -> bool {
         let frequency = (size(&self.stiffness) * size(&self.mass)).sqrt();
         let skew = size(&(&self.stiffness - self.stiffness.transpose()));
-        size(&self.damping) <= NOTHING * frequency && skew <= NOTHING * size(&self.stiffness)
+        size(&self.damping) <= TUNING.no_damping * frequency && skew <= TUNING.no_damping * size(&self.stiffness)
     }
 
     fn lifted(&self, part: &[f64]) -> Vec<f64> {
@@ -96,7 +85,7 @@ impl Reduced {
         let largest = eigen.eigenvalues.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
         let mode = |index: usize| {
             let square = eigen.eigenvalues[index];
-            let is_still = square.abs() <= STILL * STILL * largest;
+            let is_still = square.abs() <= TUNING.still_of_second_order * TUNING.still_of_second_order * largest;
             let part: Vec<f64> = shapes.column(index).iter().copied().collect();
             Mode {
                 frequency: if is_still { 0.0 } else { signed_root(square) },
@@ -130,7 +119,7 @@ impl Reduced {
         let mut pairs: Vec<[f64; 2]> = Vec::new();
         let mut real: Vec<f64> = Vec::new();
         for value in found.iter().map(|value| [value.re * rate, value.im * rate]) {
-            if value[1].abs() <= STILL * STILL * rate {
+            if value[1].abs() <= TUNING.still_of_second_order * TUNING.still_of_second_order * rate {
                 real.push(value[0]);
             } else if value[1] > 0.0 {
                 pairs.push(value);
@@ -162,7 +151,7 @@ impl Reduced {
                 (0..open.len()).reduce(|a, b| if likeness(&open[b]) >= likeness(&open[a]) { b } else { a })?;
             let (slow, shape) = open.remove(partner);
             let product = fast * slow;
-            let is_still = fast.abs().min(slow.abs()) <= STILL * rate;
+            let is_still = fast.abs().min(slow.abs()) <= TUNING.still_of_second_order * rate;
             let frequency = if is_still { 0.0 } else { signed_root(product) };
             let damping = if is_still || product < 0.0 { f64::NAN } else { -(fast + slow) / (2.0 * frequency) };
             modes.push(Mode { frequency, damping, shape });
@@ -173,7 +162,8 @@ impl Reduced {
     /// By inverse iteration with P(λ) = λ² M + λ C + K beside the eigenvalue, as real equations of twice the size.
     fn shape(&self, [re, im]: [f64; 2], begin: &Mode) -> Option<[Vec<f64>; 2]> {
         let k = self.basis.len();
-        let off = BESIDE * (re * re + im * im).sqrt().max(BESIDE * size(&self.stiffness).sqrt());
+        let off = TUNING.beside_eigenvalue
+            * (re * re + im * im).sqrt().max(TUNING.beside_eigenvalue * size(&self.stiffness).sqrt());
         let re = re + off;
         let (square_re, square_im) = (re * re - im * im, 2.0 * re * im);
         let mut matrix = DMatrix::zeros(2 * k, 2 * k);

@@ -12,23 +12,9 @@
 use nalgebra::linalg::balancing::balance_parlett_reinsch;
 use nalgebra::{Complex, DMatrix, DVector, Schur};
 
+use super::tuning::TUNING;
 use crate::numerics::{RowSpace, combined};
 use crate::simulate::statics::{Linearised, reduced};
-
-/// What rounding leaves of zero, as a share of the largest eigenvalue of a block.
-const NOTHING: f64 = 1e-12;
-
-/// Splitting of a double zero: ±√ε.
-const STILL: f64 = 1e-7;
-
-/// Eigenvalues whose imaginary part is below this share are real.
-const REAL: f64 = 1e-14;
-
-/// How far inverse iteration is from the eigenvalue, so that its matrix has an inverse.
-const BESIDE: f64 = 1e-9;
-
-/// Share of M's trace that motions without mass get.
-const LEAST_MASS: f64 = 1e-12;
 
 /// An eigenvalue, or a pair of them, with its eigenvectors.
 #[derive(Clone, Debug)]
@@ -109,7 +95,7 @@ impl FirstOrder {
         let all = basis.len();
         let [mut mass, damping, stiffness] =
             [&linear.mass, &linear.damping, &linear.stiffness].map(|matrix| reduced(matrix, &basis));
-        let least = LEAST_MASS * mass.view((0, 0), (k, k)).trace();
+        let least = TUNING.least_mass * mass.view((0, 0), (k, k)).trace();
         (0..k).for_each(|index| mass[(index, index)] += least);
         let factors = mass.lu();
         let [damping, stiffness] = [factors.solve(&damping)?, factors.solve(&stiffness)?];
@@ -166,12 +152,13 @@ fn values_of_block(matrix: &DMatrix<f64>, block: &[usize]) -> Option<Vec<Complex
     let is_still = |index: usize| {
         let value = found[index];
         let others = (0..found.len()).filter(|&other| other != index);
-        let is_opposite = |other: usize| size(found[other] + value) <= NOTHING * largest;
-        size(value) <= NOTHING * largest || size(value) <= STILL * largest && others.into_iter().any(is_opposite)
+        let is_opposite = |other: usize| size(found[other] + value) <= TUNING.zero_of_block * largest;
+        size(value) <= TUNING.zero_of_block * largest
+            || size(value) <= TUNING.still_of_first_order * largest && others.into_iter().any(is_opposite)
     };
     let value = |index: usize| match found[index] {
         _ if is_still(index) => Some(Complex::new(0.0, 0.0)),
-        value if value.im.abs() <= REAL * largest => Some(Complex::new(value.re, 0.0)),
+        value if value.im.abs() <= TUNING.real_eigenvalue * largest => Some(Complex::new(value.re, 0.0)),
         value => (value.im > 0.0).then_some(value),
     };
     Some((0..found.len()).filter_map(value).collect())
@@ -194,7 +181,7 @@ impl Balanced {
 
     /// x with A x = λ x, and z with zᵀ A = λ zᵀ, of an eigenvalue of a block.
     fn vectors(&self, value: Complex<f64>, block: &[usize]) -> Option<[Vec<Complex<f64>>; 2]> {
-        let off = BESIDE * size(value).max(BESIDE * self.rate);
+        let off = TUNING.beside_eigenvalue * size(value).max(TUNING.beside_eigenvalue * self.rate);
         let beside = value + Complex::new(off, 0.0);
         let mut begin = vec![1e-3; self.factors.len()];
         block.iter().zip(1..).for_each(|(&index, number)| begin[index] = 1.0 + 1.0 / f64::from(number));

@@ -14,8 +14,9 @@ mod outputs;
 mod random;
 mod response;
 mod roots;
+pub(crate) mod tuning;
 mod vibrations;
 
 pub use first_order::{Eigenvalue, eigenvalues};
 pub use outputs::{further_outputs, is_one_number};
-pub use vibrations::{ALIKE, ModesThere, Vibrations};
+pub use vibrations::{ModesThere, Vibrations};

@@ -15,18 +15,10 @@ use rustc_hash::FxHashMap;
 use symdiff::{Expr, Graph, math};
 
 use super::response::{Load, Response};
+use super::tuning::TUNING;
 use crate::assemble::{RandomInput, System};
 use crate::compile::{Layout, equations_of_motion};
 use crate::numerics::{Spectrum, integrals};
-
-/// Relative error of squares.
-const ACCURACY: f64 = 1e-10;
-
-/// Parts of a wide band that are integrated alone, before modes and kinks divide them: a decade has five.
-const PARTS: f64 = 5.0;
-
-/// Least frequency at which a band that begins at zero is divided, as a share of its end.
-const LEAST: f64 = 1e-4;
 
 /// Random excitations of a mechanism, and derivatives of its equations by them.
 #[derive(Clone, Debug)]
@@ -125,14 +117,14 @@ impl RandomLoads {
         let first = together.first()?;
         let outputs = self.sizes[1];
         let [from, to] = first.band;
-        let begin = from.max(LEAST * to);
-        let count = (PARTS * math::log10(to / begin)).ceil().max(1.0);
+        let begin = from.max(TUNING.least_frequency * to);
+        let count = (TUNING.parts_of_band * math::log10(to / begin)).ceil().max(1.0);
         let even = (0..=count as usize).map(|part| begin * math::pow(to / begin, part as f64 / count));
         let kinks = first.spectrum.breaks().into_iter().chain(frequencies.iter().map(|own| own / first.speed));
         let mut breaks: Vec<f64> = even.chain(kinks).filter(|own| from < *own && *own < to).chain([from, to]).collect();
         breaks.sort_unstable_by(f64::total_cmp);
         breaks.dedup();
-        integrals(&breaks, 2 * outputs, ACCURACY, |frequency, values| {
+        integrals(&breaks, 2 * outputs, TUNING.accuracy_of_squares, |frequency, values| {
             let omega = TAU * first.speed * frequency;
             let density = first.level * first.spectrum.density(frequency);
             let mut load = Load::nothing(self.sizes[0]);

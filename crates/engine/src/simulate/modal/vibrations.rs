@@ -19,9 +19,6 @@ use crate::model::ModesRequest;
 use crate::numerics::{RowSpace, combined, dot};
 use crate::simulate::statics::{Configuration, Linearised, reduced, times};
 
-/// Shapes that are less alike than this may be of other modes: smaller changes of the parameters are made.
-pub const ALIKE: f64 = 0.8;
-
 /// Small vibrations of a mechanism.
 #[derive(Debug)]
 pub struct Vibrations {

@@ -2,32 +2,15 @@
 
 use symdiff::{Tape, Tile};
 
-use super::settling::{SETTLED, Settling};
+use super::settling::Settling;
+use super::tuning::TUNING;
 use crate::assemble::System;
 use crate::compile::{ClosureRow, Residual, StartProgram, Tapes};
 
-/// Corrections of a tile's start before a lane is given up.
-const MAX_CORRECTIONS: usize = 40;
-
-/// Damped corrections of the nominal start from one guess.
-const MAX_NOMINAL_CORRECTIONS: usize = 200;
-
-/// Guesses that are tried for the nominal start: the model's own, then ever wider around it.
-const GUESSES: usize = 60;
-
-/// A constraint holds when its residual is at most this, relative to the smallest coordinate scale (at most 1).
-const CLOSED: f64 = 1e-9;
-
 /// Largest residual at which a constraint holds, given the coordinates' scales.
 pub fn allowed_residual(scale: &[f64]) -> f64 {
-    CLOSED * scale.iter().copied().fold(1.0, f64::min)
+    TUNING.closed_constraint * scale.iter().copied().fold(1.0, f64::min)
 }
-
-/// Corrections towards rest, relative to the coordinates' scales, that are not shortened.
-const REACH: f64 = 0.3;
-
-/// A sample whose coordinates lie further than this from the nominal ones, in their scales, may be on another branch.
-const FAR: f64 = 0.25;
 
 /// The largest constraint residual of a sample that cannot be assembled.
 #[derive(Clone, Debug, PartialEq)]
@@ -95,9 +78,9 @@ impl<'p> Assembly<'p> {
         let is_far = |lane: usize| {
             let places = self.program.layout.q.clone().zip(&self.scale);
             // NaN is far.
-            !places
-                .into_iter()
-                .all(|(register, scale)| (self.tile.lane(register)[lane] - state[register]).abs() <= FAR * scale)
+            !places.into_iter().all(|(register, scale)| {
+                (self.tile.lane(register)[lane] - state[register]).abs() <= TUNING.far_sample * scale
+            })
         };
         (0..self.tile.width()).map(is_far).collect()
     }
@@ -127,9 +110,9 @@ impl<'p> Assembly<'p> {
     /// The smallest of the guesses' largest residuals.
     pub fn assemble_nominal(&mut self) -> Result<(), ConstraintResidual> {
         let mut best: Option<ConstraintResidual> = None;
-        for guess in 0..GUESSES {
+        for guess in 0..TUNING.guesses {
             self.tile.run(self.program.guess());
-            let spread = 3.0 * guess as f64 / GUESSES as f64;
+            let spread = 3.0 * guess as f64 / TUNING.guesses as f64;
             for (index, register) in self.program.layout.q.clone().enumerate() {
                 // Additive recurrence: evenly spread, the same on every machine.
                 let direction = 2.0 * ((guess * (2 * index + 1)) as f64 * 0.618_033_988_749_895).fract() - 1.0;
@@ -160,14 +143,14 @@ impl<'p> Assembly<'p> {
         self.set_state(nominal);
         self.tile.run(self.program.given());
         let (q, correction) = (self.program.layout.q.clone(), self.program.layout.correction.start);
-        for _ in 0..MAX_NOMINAL_CORRECTIONS {
+        for _ in 0..TUNING.max_nominal_corrections {
             self.tile.run(self.program.position());
             let changes = self.tile.values()[correction..][..q.len()].to_vec();
             let largest = changes.iter().zip(&self.scale).map(|(c, s)| (c / s).abs()).fold(0.0, f64::max);
-            if largest <= REACH {
+            if largest <= TUNING.reach_of_corrections {
                 break;
             }
-            let share = REACH / largest;
+            let share = TUNING.reach_of_corrections / largest;
             q.clone().zip(changes).for_each(|(register, change)| self.tile.lane_mut(register)[0] += share * change);
         }
         self.assemble().into_iter().next().map_or(Ok(()), Err)
@@ -265,14 +248,14 @@ impl<'p> Assembly<'p> {
         self.tile.run(program.position());
         let mut size = self.constraint_norm();
         let mut damping = 1.0_f64;
-        for _ in 0..MAX_NOMINAL_CORRECTIONS {
+        for _ in 0..TUNING.max_nominal_corrections {
             let before = self.tile.values()[q.clone()].to_vec();
             let correction = self.tile.values()[program.layout.correction.start..][..q.len()].to_vec();
             let largest = correction.iter().zip(&self.scale).map(|(c, s)| (c / s).abs()).fold(0.0, f64::max);
             if !size.is_finite() || !largest.is_finite() {
                 break;
             }
-            if largest < SETTLED {
+            if largest < TUNING.settled {
                 break;
             }
             // No coordinate turns or moves by more than about its own scale at once.
@@ -335,7 +318,7 @@ impl<'p> Assembly<'p> {
         let count = if start == layout.w.start { layout.correction.len() } else { self.scale.len() };
         let corrections = layout.correction.start;
         self.settling.begin();
-        for _ in 0..MAX_CORRECTIONS {
+        for _ in 0..TUNING.max_corrections {
             self.tile.run(tape);
             if !self.settling.apply(&mut self.tile, start, corrections, count, &self.scale) {
                 break;

@@ -2,17 +2,9 @@
 
 use symdiff::Tile;
 
+use super::tuning::TUNING;
 use crate::assemble::System;
-use crate::compile::{Layout, PIVOT_SAMPLES, PivotSample, Tapes, compile_start};
-
-/// How far pivot samples are moved from the nominal start, in coordinate scales.
-const PIVOT_SAMPLE_SPREAD: f64 = 0.7;
-
-/// How far a configuration in general position is from the start, in coordinate scales.
-const APART: f64 = 0.05;
-
-/// Corrections that bring a moved configuration back onto the constraints.
-const CORRECTIONS: usize = 30;
+use crate::compile::{self, Layout, PivotSample, Tapes, compile_start};
 
 /// Evenly spread numbers in [−1, 1) by an additive recurrence, the same on every machine.
 pub fn spread(series: usize, index: usize) -> f64 {
@@ -37,7 +29,12 @@ pub fn guess_state(system: &System, layout: &Layout, parameters: &[f64]) -> Vec<
 
 /// States that guide the choice of pivots: the nominal start, and states in general position around it, for steps of
 /// `h`.
-pub fn pivot_samples(system: &System, layout: &Layout, nominal: &[f64], h: f64) -> [PivotSample; PIVOT_SAMPLES] {
+pub fn pivot_samples(
+    system: &System,
+    layout: &Layout,
+    nominal: &[f64],
+    h: f64,
+) -> [PivotSample; compile::tuning::TUNING.pivot_samples] {
     std::array::from_fn(|series| {
         let mut values = nominal.to_vec();
         values[layout.step] = h;
@@ -45,8 +42,9 @@ pub fn pivot_samples(system: &System, layout: &Layout, nominal: &[f64], h: f64) 
             values[x] = values[w];
             if series > 0 {
                 let scale = system.coordinates[index].scale;
-                values[layout.q.start + index] += PIVOT_SAMPLE_SPREAD * scale * spread(series, index);
-                values[layout.v.start + index] += PIVOT_SAMPLE_SPREAD * scale * spread(series + PIVOT_SAMPLES, index);
+                values[layout.q.start + index] += TUNING.pivot_sample_spread * scale * spread(series, index);
+                values[layout.v.start + index] +=
+                    TUNING.pivot_sample_spread * scale * spread(series + compile::tuning::TUNING.pivot_samples, index);
             }
         }
         PivotSample { values }
@@ -64,9 +62,9 @@ pub fn move_apart(system: &System, state: &[f64]) -> Option<Vec<f64>> {
     tile.values_mut()[..state.len()].copy_from_slice(state);
     tile.run(start.sample());
     for (index, register) in start.layout.q.clone().enumerate() {
-        tile.lane_mut(register)[0] += APART * system.coordinates[index].scale * spread(7, index);
+        tile.lane_mut(register)[0] += TUNING.apart_from_start * system.coordinates[index].scale * spread(7, index);
     }
-    for _ in 0..CORRECTIONS {
+    for _ in 0..TUNING.corrections_of_position {
         tile.run(start.position());
         for (register, correction) in start.layout.q.clone().zip(start.layout.correction.clone()) {
             tile.lane_mut(register)[0] += tile.lane(correction)[0];

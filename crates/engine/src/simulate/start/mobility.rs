@@ -4,12 +4,10 @@ use symdiff::{Expr, Tile, slopes};
 
 use super::general_position::{move_apart, pivot_samples};
 use super::rank::{dependent_of_sizes, row_size};
+use super::tuning::TUNING;
 use crate::assemble::{ConstraintId, System};
 use crate::compile::{StartProgram, Tapes};
 use crate::simulate::motion_values::motion_values;
-
-/// Rows of Φ_q that are independent of the others by less than this (scaled) count as dependent.
-pub const DEPENDENT: f64 = 1e-8;
 
 /// Degrees of freedom and redundancy.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -27,7 +25,7 @@ pub struct Mobility {
 pub fn mobility(system: &System, start: &StartProgram, nominal: &[f64]) -> Mobility {
     let usual = usual_row_sizes(system, start, nominal);
     let dependent = |state: &[f64]| -> Vec<ConstraintId> {
-        let rows = dependent_of_sizes(&jacobian_rows(system, start, state), &usual, DEPENDENT);
+        let rows = dependent_of_sizes(&jacobian_rows(system, start, state), &usual, TUNING.dependent_row);
         rows.into_iter().map(ConstraintId::new).collect()
     };
     let at_start = dependent(nominal);
@@ -65,7 +63,7 @@ pub fn contradiction(
         row.extend(states.map(|(column, value)| (column, value * system.coordinates[column].scale)));
     }
     let usual = usual_row_sizes(system, start, nominal);
-    let implied = dependent_of_sizes(&rows, &usual, DEPENDENT);
+    let implied = dependent_of_sizes(&rows, &usual, TUNING.dependent_row);
     suspects.into_iter().find(|row| !implied.contains(row)).map(ConstraintId::new)
 }
 

@@ -3,16 +3,11 @@
 use rustc_hash::FxHashMap;
 use symdiff::Expr;
 
-use super::mobility::{DEPENDENT, jacobian_rows};
+use super::mobility::jacobian_rows;
 use super::rank::dependent_rows;
+use super::tuning::TUNING;
 use crate::assemble::{Distance, System};
 use crate::compile::{Layout, OpenStart, StartProgram, time_derivative};
-
-/// Distances from rest below this, in their scales, are round-off.
-const AT_REST: f64 = 1e-12;
-
-/// Distances from rest above this, in their scales, show that several of them share the open part.
-const APART: f64 = 1e-6;
 
 /// For which samples a start is looked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,7 +26,7 @@ pub fn open_start(system: &System, start: &StartProgram, nominal: &[f64], sample
     let is_apart = |kind: Kind| {
         distances(system, &start.layout, nominal, kind)
             .iter()
-            .any(|(distance, value)| !(value / distance.scale).abs().le(&AT_REST))
+            .any(|(distance, value)| !(value / distance.scale).abs().le(&TUNING.at_rest))
     };
     // With constraints, other parameters move coordinates that are at rest in the nominal start.
     let follows = samples == Samples::All && !system.parameters.is_empty() && !system.lambda.is_empty();
@@ -40,7 +35,7 @@ pub fn open_start(system: &System, start: &StartProgram, nominal: &[f64], sample
         let rows = &rows.get_or_insert_with(|| jacobian_rows(system, start, nominal))[..constraints];
         let open = |row: &Vec<(usize, f64)>| row.iter().copied().filter(|(index, _)| given[*index].is_none()).collect();
         let rows: Vec<Vec<(usize, f64)>> = rows.iter().map(open).collect();
-        let rank = rows.len() - dependent_rows(&rows, DEPENDENT).len();
+        let rank = rows.len() - dependent_rows(&rows, TUNING.dependent_row).len();
         given.iter().filter(|given| given.is_none()).count() > rank + conditions
     };
     let conditions = &system.start.conditions;
@@ -60,7 +55,7 @@ pub fn shared_coordinates(system: &System, start: &StartProgram, nominal: &[f64]
     let mut shared = Vec::new();
     for (kind, is_open) in [(Kind::Position, start.open.positions), (Kind::Velocity, start.open.velocities)] {
         let distances = if is_open { distances(system, &start.layout, nominal, kind) } else { Vec::new() };
-        let is_far = |(distance, value): &(&Distance, f64)| (value / distance.scale).abs() > APART;
+        let is_far = |(distance, value): &(&Distance, f64)| (value / distance.scale).abs() > TUNING.several_open;
         let far: Vec<&Distance> = distances.iter().filter(|distance| is_far(distance)).map(|(far, _)| *far).collect();
         shared.extend(open_of(system, start, nominal, kind, far).map(|distance| known_as(&distance.name, kind)));
     }
@@ -120,7 +115,7 @@ fn open_of<'s>(
     let known = rows.len() - distances.len();
     let is_determined = move |index: usize| {
         let with_known: Vec<Vec<(usize, f64)>> = rows[..known].iter().chain([&rows[known + index]]).cloned().collect();
-        dependent_rows(&with_known, DEPENDENT).contains(&known)
+        dependent_rows(&with_known, TUNING.dependent_row).contains(&known)
     };
     distances.into_iter().enumerate().filter(move |&(index, _)| !is_determined(index)).map(|(_, distance)| distance)
 }

@@ -2,13 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use super::tuning::TUNING;
 use nalgebra::DMatrix;
-
-/// Pivots below this share of the first one count as zero.
-const RANK_TOLERANCE: f64 = 1e-9;
-
-/// A row is told apart by a column of its own where the entry there is at least this share of its largest.
-const OWN_SHARE: f64 = 1e-3;
 
 /// Rows of a sparse matrix (entries (column, value), scaled to comparable size) that depend on the rows before them.
 pub fn dependent_rows(rows: &[Vec<(usize, f64)>], tolerance: f64) -> Vec<usize> {
@@ -42,7 +37,7 @@ fn rows_with_shared_columns(rows: &[Vec<(usize, f64)>], usual: &[f64]) -> Vec<us
         let Some(&row) = rows_of_column[column].iter().find(|&&row| is_left[row]) else { continue };
         let size = row_size(&rows[row]).max(usual[row]);
         let own: f64 = rows[row].iter().filter(|(other, _)| *other == column).map(|(_, value)| value).sum();
-        if own.abs() < OWN_SHARE * size {
+        if own.abs() < TUNING.own_share * size {
             continue;
         }
         is_left[row] = false;
@@ -110,7 +105,7 @@ pub fn free_columns(matrix: &DMatrix<f64>, weight: &[f64]) -> Vec<usize> {
         let Some((row, column)) = entries.max_by(|a, b| size(a).total_cmp(&size(b))) else { break };
         let pivot = left[(row, column)];
         let largest = *first.get_or_insert(pivot.abs());
-        let negligible = pivot.abs() <= RANK_TOLERANCE * largest;
+        let negligible = pivot.abs() <= TUNING.rank_tolerance * largest;
         if negligible || !pivot.is_finite() {
             break;
         }

@@ -1,12 +1,7 @@
 //! Newton's corrections of a tile until every lane has settled.
 
+use super::tuning::TUNING;
 use symdiff::{Tile, Vectorise, vectorised};
-
-/// Corrections (relative to the coordinates' scales) that end the iteration.
-pub(super) const SETTLED: f64 = 1e-14;
-
-/// Corrections below this that no longer shrink are round-off.
-const STALLED: f64 = 1e-8;
 
 /// Record of each lane's corrections.
 #[derive(Debug)]
@@ -72,8 +67,8 @@ impl Vectorise for Apply<'_> {
             }
         }
         for ((pending, size), last) in pending.iter_mut().zip(size.iter()).zip(last.iter_mut()) {
-            let is_rounding = *size <= STALLED && *size >= 0.5 * *last;
-            *pending &= *size > SETTLED && !is_rounding;
+            let is_rounding = *size <= TUNING.stalled && *size >= 0.5 * *last;
+            *pending &= *size > TUNING.settled && !is_rounding;
             *last = *size;
         }
     }

@@ -12,37 +12,11 @@ use nalgebra::{DMatrix, DVector, SymmetricEigen};
 use super::configuration::{Configuration, Linearised, reduced, times};
 use super::scaled::Scaled;
 use super::stability::Stability;
+use super::tuning::TUNING;
 use crate::assemble::{ConstraintId, CoordinateId, System};
 use crate::compile::{EquationsProgram, Layout, compile_equations};
 use crate::numerics::{RowSpace, combined, dot};
-
-/// Corrections before it is given up.
-const MAX_CORRECTIONS: usize = 400;
-
-/// Corrections of a coordinate, in its scale, that are taken as Newton's method says.
-const NEAR: f64 = 0.1;
-
-/// Longest correction of a coordinate, in its scale.
-const REACH: f64 = 0.3;
-
-/// Corrections below this end the iteration.
-const SETTLED: f64 = 1e-14;
-
-/// Corrections below this that no longer shrink are round-off.
-const STALLED: f64 = 1e-9;
-
-/// Stiffnesses, and forces, below this share of the largest are zero.
-const NOTHING: f64 = 1e-10;
-
-/// Times that a correction is halved at most.
-const MOST_HALVINGS: u32 = 30;
-
-/// Steps from the nominal parameters to those of a sample that is far from them.
-const CONTINUATION_STEPS: usize = 16;
-
-/// A sample whose coordinates lie further than this from the nominal ones, in their scales, is reached by small
-/// changes.
-const FAR: f64 = 0.25;
+use crate::simulate::{self, start};
 
 /// Finds equilibria of a mechanism.
 #[derive(Clone, Debug)]
@@ -109,17 +83,24 @@ impl Equilibrium {
         let at_once = self.find(state, parameters);
         let is_far = |found: &Vec<f64>| {
             let change = |(register, scale): (usize, &f64)| ((found[register] - state[register]) / scale).abs();
-            !self.program.layout.q.clone().zip(&self.scale).map(change).all(|change| change <= FAR)
+            !self
+                .program
+                .layout
+                .q
+                .clone()
+                .zip(&self.scale)
+                .map(change)
+                .all(|change| change <= start::tuning::TUNING.far_sample)
         };
         if at_once.as_ref().is_ok_and(|found| !is_far(found)) {
             return at_once;
         }
         let mut followed = state.to_vec();
-        for step in 1..=CONTINUATION_STEPS {
-            let share = step as f64 / CONTINUATION_STEPS as f64;
+        for step in 1..=simulate::tuning::TUNING.continuation_steps {
+            let share = step as f64 / simulate::tuning::TUNING.continuation_steps as f64;
             let between: Vec<f64> =
                 nominal.iter().zip(parameters).map(|(nominal, value)| nominal + share * (value - nominal)).collect();
-            let last = if step == CONTINUATION_STEPS { parameters } else { &between };
+            let last = if step == simulate::tuning::TUNING.continuation_steps { parameters } else { &between };
             match self.find(&followed, last) {
                 Ok(found) => followed = found,
                 Err(_) => return at_once,
@@ -138,14 +119,14 @@ impl Equilibrium {
         self.set_positions(&mut at, state);
         let mut last = f64::INFINITY;
         let mut balance = self.balanced(&mut at);
-        for _ in 0..MAX_CORRECTIONS {
+        for _ in 0..TUNING.max_corrections {
             let before = at.get(layout.q.clone());
             let Some(step) = balance.step(&self.states) else { break };
             let size = self.size(&step, &before);
-            let settles = size <= SETTLED || size <= STALLED && size >= 0.5 * last;
+            let settles = size <= start::tuning::TUNING.settled || size <= TUNING.stalled && size >= 0.5 * last;
             last = if step.is_newton { size } else { f64::INFINITY };
             let mut share = 1.0;
-            for _ in 0..MOST_HALVINGS {
+            for _ in 0..TUNING.most_halvings {
                 let places = before.iter().zip(&step.all).zip(&self.scale);
                 let moved: Vec<f64> = places.map(|((q, change), scale)| q + share * change * scale).collect();
                 at.set(layout.q.clone(), &moved);
@@ -256,21 +237,21 @@ impl Balance {
             states.iter().for_each(|state| sizes[state.index] = 0.0);
             sizes.into_iter().fold(0.0, f64::max)
         };
-        let nothing = NOTHING * self.applied.max(longest_of(stiffness));
+        let nothing = TUNING.zero_stiffness * self.applied.max(longest_of(stiffness));
         let solve = if leads_downhill { newton } else { shortest };
         let (newton, is_regular) = solve(&small, &forces, nothing);
         let allowed = combined(basis, &newton, n);
-        let is_near = longest(&allowed) <= NEAR;
+        let is_near = longest(&allowed) <= TUNING.near_correction;
         let is_downhill = leads_downhill && !(is_regular && is_near);
         let (allowed, is_newton) = if !is_downhill {
-            let share = if is_near { 1.0 } else { (REACH / longest(&allowed)).min(1.0) };
+            let share = if is_near { 1.0 } else { (TUNING.longest_correction / longest(&allowed)).min(1.0) };
             (allowed.iter().map(|part| share * part).collect::<Vec<f64>>(), is_near && is_regular)
         } else {
             let downhill = combined(basis, &downhill(&small, &forces), n);
-            let share = (REACH / longest(&downhill)).min(1.0);
+            let share = (TUNING.longest_correction / longest(&downhill)).min(1.0);
             (downhill.iter().map(|part| share * part).collect(), false)
         };
-        let shortened = (REACH / longest(&closing)).min(1.0);
+        let shortened = (TUNING.longest_correction / longest(&closing)).min(1.0);
         let all = allowed.iter().zip(&closing).map(|(a, b)| a + shortened * b).collect();
         let work = -dot(motion, &allowed);
         Some(Step { all, allowed, work, is_newton: is_newton && shortened == 1.0, is_downhill })
@@ -280,11 +261,11 @@ impl Balance {
         let (basis, n) = (&self.space.null, scale.len());
         let forces: Vec<f64> = basis.iter().map(|vector| -dot(vector, &self.linear.motion)).collect();
         let pushed = combined(basis, &forces, n);
-        let nothing = NOTHING * longest_of(&self.linear.stiffness).max(1e-300);
+        let nothing = TUNING.zero_stiffness * longest_of(&self.linear.stiffness).max(1e-300);
         let by_push = |a: &usize, b: &usize| pushed[*a].abs().total_cmp(&pushed[*b].abs());
         let is_alone = |index: &usize| self.linear.stiffness.column(*index).iter().all(|entry| entry.abs() <= nothing);
         // A state that nothing depends on cannot be brought to rest, and what else is not in balance gives way to it.
-        let least = NOTHING * pushed.iter().fold(0.0_f64, |most, push| most.max(push.abs()));
+        let least = TUNING.zero_stiffness * pushed.iter().fold(0.0_f64, |most, push| most.max(push.abs()));
         let states = states.iter().map(|state| state.index).filter(|&index| pushed[index].abs() > least);
         let open = states.filter(is_alone).max_by(by_push);
         let coordinate = open.or_else(|| (0..n).max_by(by_push)).unwrap_or(0);
@@ -308,7 +289,8 @@ fn newton(small: &DMatrix<f64>, forces: &[f64], nothing: f64) -> (Vec<f64>, bool
     if forces.is_empty() {
         return (Vec::new(), true);
     }
-    let is_symmetric = (small - small.transpose()).iter().all(|part| part.abs() <= NOTHING * longest_of(small));
+    let is_symmetric =
+        (small - small.transpose()).iter().all(|part| part.abs() <= TUNING.zero_stiffness * longest_of(small));
     if !is_symmetric && let Some(found) = small.clone().full_piv_lu().solve(&DVector::from_column_slice(forces)) {
         return (found.iter().copied().collect(), true);
     }
@@ -319,7 +301,7 @@ fn newton(small: &DMatrix<f64>, forces: &[f64], nothing: f64) -> (Vec<f64>, bool
     for (index, value) in eigen.eigenvalues.iter().enumerate() {
         let vector = eigen.eigenvectors.column(index);
         let force: f64 = vector.iter().zip(forces).map(|(a, b)| a * b).sum();
-        if value.abs() > NOTHING * largest {
+        if value.abs() > TUNING.zero_stiffness * largest {
             found.iter_mut().zip(vector.iter()).for_each(|(sum, part)| *sum += force / value * part);
         } else {
             is_regular &= force.abs() <= nothing;
@@ -336,12 +318,12 @@ fn shortest(small: &DMatrix<f64>, forces: &[f64], nothing: f64) -> (Vec<f64>, bo
     let Scaled { matrix, rows, columns } = Scaled::of(small);
     let right = DVector::from_iterator(forces.len(), forces.iter().zip(&rows).map(|(force, factor)| force * factor));
     let factors = matrix.svd(true, true);
-    let Ok(found) = factors.solve(&right, NOTHING * factors.singular_values.max()) else {
+    let Ok(found) = factors.solve(&right, TUNING.zero_stiffness * factors.singular_values.max()) else {
         return (vec![0.0; forces.len()], false);
     };
     let found: Vec<f64> = found.iter().zip(&columns).map(|(part, factor)| part * factor).collect();
     let is_met = |((image, force), row): ((f64, &f64), &f64)| {
-        (image - force).abs() <= nothing.max(NOTHING * (force.abs() + row.recip()))
+        (image - force).abs() <= nothing.max(TUNING.zero_stiffness * (force.abs() + row.recip()))
     };
     let is_met = times(small, &found).into_iter().zip(forces).zip(&rows).all(is_met);
     (found, is_met)
@@ -356,7 +338,7 @@ fn downhill(small: &DMatrix<f64>, forces: &[f64]) -> Vec<f64> {
     let largest = eigen.eigenvalues.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
     let size = forces.iter().fold(0.0_f64, |size, force| size.max(force.abs()));
     // Nothing is softer than what the force moves by a scale.
-    let least = (NOTHING * largest).max(size);
+    let least = (TUNING.zero_stiffness * largest).max(size);
     let mut found = vec![0.0; forces.len()];
     for (index, value) in eigen.eigenvalues.iter().enumerate() {
         let vector = eigen.eigenvectors.column(index);

@@ -6,11 +6,9 @@ use symdiff::jet::JetSpace;
 
 use super::equilibrium::Equilibrium;
 use super::scaled::Scaled;
+use super::tuning::TUNING;
 use crate::assemble::ConstraintId;
 use crate::compile::Tapes;
-
-/// Pivots of the equations below this share of the largest are zero: an indifferent coordinate has no jet of its own.
-const SINGULAR: f64 = 1e-10;
 
 impl Equilibrium {
     /// The jet of an equilibrium whose state is that of the box's centre: each sweep x ← x − J₀⁻¹ R(x) in jets makes
@@ -77,7 +75,7 @@ impl Equilibrium {
         let factors = scaled.matrix.full_piv_lu();
         let pivots = factors.u().diagonal().map(f64::abs);
         let (least, most) = (pivots.min(), pivots.max());
-        if least.is_nan() || most.is_nan() || least <= SINGULAR * most {
+        if least.is_nan() || most.is_nan() || least <= TUNING.singular_pivot * most {
             return None;
         }
         let scale = |index: usize| if index < n { self.scale[index] } else { 1.0 };

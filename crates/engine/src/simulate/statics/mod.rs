@@ -10,6 +10,7 @@ mod equilibrium;
 mod jets;
 mod scaled;
 mod stability;
+pub(crate) mod tuning;
 
 pub use configuration::{Configuration, Linearised, reduced, times};
 pub use equilibrium::{Equilibrium, NoEquilibrium};

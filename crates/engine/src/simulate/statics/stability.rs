@@ -3,14 +3,10 @@
 use nalgebra::{DMatrix, SymmetricEigen};
 
 use super::configuration::{Linearised, reduced};
+use super::tuning::TUNING;
 use crate::assemble::CoordinateId;
 use crate::numerics::RowSpace;
-
-/// Eigenvalues below this share of the largest are zero.
-const INDIFFERENT: f64 = 1e-9;
-
-/// Share of M's trace that motions without mass get.
-const LEAST_MASS: f64 = 1e-12;
+use crate::simulate::modal;
 
 /// What the stiffness says of an equilibrium.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,7 +29,7 @@ impl Stability {
             return Self { smallest: f64::NAN, indifferent: Vec::new() };
         };
         let largest = values.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
-        let is_none = |value: &f64| value.abs() <= INDIFFERENT * largest;
+        let is_none = |value: &f64| value.abs() <= TUNING.indifferent_eigenvalue * largest;
         let mut indifferent: Vec<CoordinateId> = (0..values.len())
             .filter(|&index| is_none(&values[index]))
             .filter_map(|index| {
@@ -53,7 +49,7 @@ impl Stability {
 fn eigen(stiffness: &DMatrix<f64>, mass: &DMatrix<f64>, basis: &[Vec<f64>]) -> Option<(Vec<f64>, Vec<Vec<f64>>)> {
     let symmetric = |matrix: DMatrix<f64>| (&matrix + matrix.transpose()) * 0.5;
     let (stiffness, mut mass) = (symmetric(reduced(stiffness, basis)), symmetric(reduced(mass, basis)));
-    let least = LEAST_MASS * mass.trace();
+    let least = modal::tuning::TUNING.least_mass * mass.trace();
     (0..basis.len()).for_each(|index| mass[(index, index)] += least);
     let root = mass.cholesky()?.unpack();
     let half = root.solve_lower_triangular(&stiffness)?;

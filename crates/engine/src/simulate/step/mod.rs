@@ -6,6 +6,7 @@ mod prediction;
 mod rank_revealing;
 mod rounding;
 mod stepper;
+pub(crate) mod tuning;
 
 pub use newton::Counters;
 pub use stepper::{LocalError, StepFailure, Stepper};

@@ -11,35 +11,10 @@ use symdiff::{Tile, Vectorise, vectorised};
 use super::pivots::Watch;
 use super::prediction::Predict;
 use super::rank_revealing::solve_rank_deficient;
-use super::rounding::{ROUND_OFF, is_rounding, matrix_entries, rounding_of_residuals};
+use super::rounding::{is_rounding, matrix_entries, rounding_of_residuals};
+use super::tuning::TUNING;
 use crate::compile::Program;
 use crate::simulate::start::allowed_residual;
-
-/// Corrections with the step's first factorisation before each gets its own.
-const FROZEN_CORRECTIONS: usize = 4;
-
-/// Corrections before the iteration is given up.
-const MAX_CORRECTIONS: usize = 12;
-
-/// Error of positions at which the iteration ends, relative to the coordinate's scale: the last correction in position
-/// units times the observed contraction.
-const TOLERANCE: f64 = 1e-11;
-
-/// The same for a first correction, whose contraction is only estimated. The remaining error is noise in the response
-/// as a function of the parameters. Against a run that always takes two corrections, the slider crank's Chebyshev
-/// bounds over 2 s change by 2e-12 m at 1e-15, 3e-11 at 1e-14, 2e-9 at 1e-13; those of Taylor by 2e-9 at 1e-14.
-const FIRST_TOLERANCE: f64 = 1e-14;
-
-/// Contraction that is assumed of a first correction where none was observed.
-const FIRST_CONTRACTION: f64 = 0.1;
-
-/// The estimated contraction of a first correction is this times the one last observed of its lane, and at least the
-/// least.
-const CONTRACTION_SAFETY: f64 = 10.0;
-const LEAST_CONTRACTION: f64 = 1e-9;
-
-/// After this many steps the observed contraction is discarded, so that it is observed again.
-const STEPS_BETWEEN_LOOKS: u64 = 16;
 
 /// Work of the iteration, summed over all steps.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -90,7 +65,7 @@ impl Newton {
             is_renewed: false,
             last: vec![0.0; width],
             norm: vec![0.0; width],
-            contraction: vec![FIRST_CONTRACTION; width],
+            contraction: vec![TUNING.first_contraction; width],
             start: Vec::new(),
             before: [Vec::new(), Vec::new()],
             known: 0,
@@ -103,7 +78,7 @@ impl Newton {
     /// Forgets the steps before: accelerations and multipliers do not go on from theirs.
     pub fn forget(&mut self) {
         self.known = 0;
-        self.contraction.fill(FIRST_CONTRACTION);
+        self.contraction.fill(TUNING.first_contraction);
     }
 
     /// Whether a lane's last step took the rank-revealing solve.
@@ -125,8 +100,8 @@ impl Newton {
         self.singular.fill(false);
         self.late.fill(false);
         self.is_renewed = false;
-        if self.steps.is_multiple_of(STEPS_BETWEEN_LOOKS) {
-            self.contraction.fill(FIRST_CONTRACTION);
+        if self.steps.is_multiple_of(TUNING.steps_between_looks) {
+            self.contraction.fill(TUNING.first_contraction);
         }
         self.steps += 1;
         self.iterate(program, tile, h);
@@ -193,12 +168,12 @@ impl Newton {
 
     fn iterate(&mut self, program: &Program, tile: &mut Tile, h: f64) {
         let gain = program.coefficients.position_gain(h);
-        for count in 0..MAX_CORRECTIONS {
-            if count >= FROZEN_CORRECTIONS {
+        for count in 0..TUNING.max_corrections {
+            if count >= TUNING.frozen_corrections {
                 self.is_renewed = true;
                 self.late.iter_mut().zip(&self.pending).for_each(|(late, pending)| *late |= pending);
             }
-            if count == 0 || count >= FROZEN_CORRECTIONS {
+            if count == 0 || count >= TUNING.frozen_corrections {
                 tile.run(program.factor());
                 vectorised(Watch { watched: &program.watched, tile, singular: &mut self.singular });
                 tile.run(program.first_correction());
@@ -257,9 +232,10 @@ impl Newton {
         for lane in (0..self.pending.len()).filter(|&lane| self.pending[lane] && self.singular[lane]) {
             let value = |register: usize| tile.lane(register)[lane];
             let entries = matrix_entries(program, tile, lane);
-            let rounding = match count {
-                0..FROZEN_CORRECTIONS => vec![0.0; program.residual.len()],
-                _ => rounding_of_residuals(program, tile, lane, &entries, gain),
+            let rounding = if count < TUNING.frozen_corrections {
+                vec![0.0; program.residual.len()]
+            } else {
+                rounding_of_residuals(program, tile, lane, &entries, gain)
             };
             let uncertain = |residual: f64, rounding: f64| if residual.abs() <= rounding { 0.0 } else { -residual };
             let residuals = program.residual.iter().zip(&rounding);
@@ -360,12 +336,12 @@ impl Vectorise for TestConvergence<'_> {
         let lanes = self.pending.iter_mut().zip(self.last).zip(self.contraction).zip(self.norm);
         for (((pending, last), expected), &norm) in lanes {
             let contraction = if self.count == 0 { *expected } else { norm / *last };
-            let seen = (CONTRACTION_SAFETY * contraction).max(LEAST_CONTRACTION);
+            let seen = (TUNING.contraction_safety * contraction).max(TUNING.least_contraction);
             *expected = if self.count == 1 && *pending { seen } else { *expected };
             let error = if contraction < 1.0 { norm * contraction / (1.0 - contraction) } else { f64::INFINITY };
             *last = if *pending { norm } else { *last };
-            let tolerance = if self.count == 0 { FIRST_TOLERANCE } else { TOLERANCE };
-            *pending &= !(error <= tolerance || norm <= ROUND_OFF);
+            let tolerance = if self.count == 0 { TUNING.first_tolerance } else { TUNING.tolerance };
+            *pending &= !(error <= tolerance || norm <= TUNING.round_off);
         }
     }
 }

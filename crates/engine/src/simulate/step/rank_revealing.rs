@@ -3,13 +3,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::tuning::TUNING;
 use nalgebra::{DMatrix, DVector};
-
-/// Singular values below this share of the largest count as zero.
-const RANK_TOLERANCE: f64 = 1e-9;
-
-/// A pivot is eliminated sparsely where it is at least this large in the scaled matrix, and against its row.
-const SAFE: (f64, f64) = (1e-3, 0.1);
 
 /// Solution of `matrix · x = right` where the matrix may have lost rank: entries (row, column, value), scaled
 /// symmetrically by `scale`. Safe pivots are eliminated sparsely; the small remainder has its smallest least-squares
@@ -69,7 +64,7 @@ impl Remainder {
         let (row, column) = loop {
             let (_, row) = self.sparsest.pop_first()?;
             let size = self.rows[row].values().fold(0.0, |size: f64, value| size.max(value.abs()));
-            let smallest = (SAFE.0 * self.largest).max(SAFE.1 * size);
+            let smallest = (TUNING.safe_pivot.0 * self.largest).max(TUNING.safe_pivot.1 * size);
             let safe = self.rows[row].iter().filter(|(_, value)| value.abs() >= smallest);
             // A row without one waits until it changes.
             if let Some((&column, _)) = safe.min_by_key(|&(&column, _)| (self.columns[column].len(), column)) {
@@ -110,7 +105,8 @@ impl Remainder {
             return None;
         }
         let svd = matrix.try_svd(true, true, f64::EPSILON, 10_000)?;
-        let solution = svd.solve(&right, RANK_TOLERANCE * self.largest.max(svd.singular_values.max())).ok()?;
+        let solution =
+            svd.solve(&right, TUNING.zero_singular_value * self.largest.max(svd.singular_values.max())).ok()?;
         columns.iter().zip(solution.iter()).for_each(|(&column, &value)| x[column] = value);
         Some(x)
     }

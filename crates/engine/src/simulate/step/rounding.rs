@@ -4,14 +4,8 @@ use std::collections::BTreeMap;
 
 use symdiff::Tile;
 
+use super::tuning::TUNING;
 use crate::compile::Program;
-
-/// Corrections below this (relative positions) are round-off, whatever their contraction.
-pub(super) const ROUND_OFF: f64 = 4.0 * f64::EPSILON;
-
-/// Corrections up to this (relative positions) may be rounding over the distance to a singular position, if constraints
-/// hold.
-const STALLED: f64 = 1e-10;
 
 /// Entries of the Newton matrix of a lane, after its tape has run: row, column, value.
 pub fn matrix_entries(program: &Program, tile: &Tile, lane: usize) -> Vec<(usize, usize, f64)> {
@@ -64,7 +58,7 @@ pub fn rounding_of_residuals(
     rounding.extend(program.rounding.iter().map(|error| error / gain));
     for &(row, column, slope) in entries.iter().filter(|(row, column, _)| *row >= n && *column < n) {
         let position = tile.lane(program.layout.q.start + column)[lane].abs() + program.scale[column];
-        rounding[row] += ROUND_OFF * slope.abs() * position / gain;
+        rounding[row] += TUNING.round_off * slope.abs() * position / gain;
     }
     rounding
 }
@@ -75,5 +69,5 @@ pub fn is_rounding(program: &Program, tile: &Tile, lane: usize, last: f64, gain:
     let entries = matrix_entries(program, tile, lane);
     let rounding = rounding_of_residuals(program, tile, lane, &entries, gain);
     let mut constraints = program.residual.iter().zip(&rounding).skip(program.scale.len());
-    last <= STALLED && constraints.all(|(&register, rounding)| tile.lane(register)[lane].abs() <= *rounding)
+    last <= TUNING.stalled && constraints.all(|(&register, rounding)| tile.lane(register)[lane].abs() <= *rounding)
 }

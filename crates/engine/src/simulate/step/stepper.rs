@@ -3,11 +3,9 @@
 use symdiff::Tile;
 
 use super::newton::{Counters, Newton};
+use super::tuning::TUNING;
 use crate::assemble::{CoordinateId, EquationId};
 use crate::compile::{Program, Tapes};
-
-/// A step that fails is divided into 2, 4, … substeps, up to 2 to the power of this, before it is given up.
-const MAX_HALVINGS: u32 = 10;
 
 /// A step that failed for a sample, however short its substeps.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -275,7 +273,7 @@ impl<'p> Stepper<'p> {
         let start = single.save();
         single.refines = self.refines;
         single.errors = self.errors.as_ref().map(|_| vec![LocalError::default()]);
-        for halvings in 1..=MAX_HALVINGS {
+        for halvings in 1..=TUNING.max_halvings {
             let parts = 1_u32 << halvings;
             single.rewind(&start, h);
             let part = h / f64::from(parts);

@@ -11,7 +11,8 @@
 mod resolution;
 mod resolving_steps;
 mod terms;
+pub(crate) mod tuning;
 
 pub use resolution::TimeFunctions;
-pub(in crate::simulate) use resolution::{RESOLVED, TOO_FAST, Work};
-pub(in crate::simulate) use resolving_steps::{MOST_ENCLOSURES, ResolvingSteps};
+pub(in crate::simulate) use resolution::Work;
+pub(in crate::simulate) use resolving_steps::ResolvingSteps;

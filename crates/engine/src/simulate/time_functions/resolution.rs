@@ -6,42 +6,10 @@ use std::f64::consts::TAU;
 use symdiff::{Expr, Graph, Interval, Ranges};
 
 use super::terms::{Condition, functions};
+use super::tuning::TUNING;
 use crate::assemble::UncertainParameter;
 use crate::simulate::diagnostics::written;
 use crate::simulate::simulator::Simulator;
-
-/// A step is divided where a function may change by more than this, as a share of its own size.
-pub(in crate::simulate) const TOO_FAST: f64 = 1.0;
-
-/// Largest change within a part of a divided step.
-pub(in crate::simulate) const RESOLVED: f64 = 0.5;
-
-/// Jumps are this many steps apart.
-const APART: f64 = 4.0;
-
-/// Steps are not divided further than to this share of the duration for jumps that coincide for some parameters only.
-const COINCIDING: f64 = 1e-6;
-
-/// Steps are not divided further than to this share of the duration for jumps that coincide for all parameters: a
-/// condition and its negative.
-const ONE: f64 = 1e-9;
-
-/// Halvings of a step. A mechanism's constraints are divided by the square of the step, and so is their rounding.
-const MOST_HALVINGS: u32 = 24;
-const MOST_HALVINGS_WITH_CONSTRAINTS: u32 = 10;
-
-/// Pieces looked at to find a function's size.
-const PIECES: usize = 400;
-
-/// Pieces of a step over which a function is enclosed whose rate has no bound.
-const PARTS: usize = 16;
-
-/// Cuts of a quarter by which a jump is located.
-const MOST_CUTS: usize = 120;
-
-/// Parts of the box of parameters looked at to tell how often a step is switched, and how often a part is halved.
-const MOST_PARTS: usize = 300;
-const DEEPEST: u32 = 14;
 
 /// The functions of the time in a mechanism's equations of motion.
 #[derive(Clone, Debug)]
@@ -144,7 +112,8 @@ impl TimeFunctions {
             Switch { of, formula, ranges, jumps_with }
         };
         let switches: Vec<Switch> = functions.conditions.into_iter().map(switch).collect();
-        let halvings = if system.constraint.is_empty() { MOST_HALVINGS } else { MOST_HALVINGS_WITH_CONSTRAINTS };
+        let halvings =
+            if system.constraint.is_empty() { TUNING.most_halvings } else { TUNING.most_halvings_with_constraints };
         let found = Self { duration, parameters, terms, switches, halvings };
         (!(found.terms.is_empty() && found.switches.is_empty())).then_some(found)
     }
@@ -164,7 +133,7 @@ impl TimeFunctions {
     /// expression, and its period, s, as far as its rate or its jumps tell.
     pub(super) fn first_unresolved(&self, from: f64, h: f64, work: &mut Work) -> Option<Unresolved<'_>> {
         let symbols = self.over(from, from + h);
-        let term = self.terms.iter().find(|term| !term.is_slow(self, (from, from + h), h, RESOLVED, work));
+        let term = self.terms.iter().find(|term| !term.is_slow(self, (from, from + h), h, TUNING.resolved, work));
         if let Some(term) = term {
             let (_, rate) = term.over(&symbols, work);
             let period = if rate.magnitude().is_finite() { TAU * term.size / rate.magnitude() } else { h };
@@ -173,7 +142,11 @@ impl TimeFunctions {
         // Two jumps lie in what surrounds the step.
         let near = self.switches.iter().find(|switch| switch.over(&symbols, work) != Switches::Never);
         let switch = near.or(self.switches.first())?;
-        Some(Unresolved { formula: &switch.formula, of: switch.of, period: (1.0 + 2.0 * APART) * h })
+        Some(Unresolved {
+            formula: &switch.formula,
+            of: switch.of,
+            period: (1.0 + 2.0 * TUNING.steps_between_jumps) * h,
+        })
     }
 
     /// s
@@ -190,7 +163,8 @@ impl TimeFunctions {
         if self.switches.is_empty() {
             return true;
         }
-        let (first, last) = ((a - APART * h).max(0.0), (b + APART * h).min(self.duration));
+        let (first, last) =
+            ((a - TUNING.steps_between_jumps * h).max(0.0), (b + TUNING.steps_between_jumps * h).min(self.duration));
         let mut boxes = vec![(self.over(first, last), 0)];
         let mut seen = 0;
         while let Some((symbols, depth)) = boxes.pop() {
@@ -215,7 +189,7 @@ impl TimeFunctions {
                 continue;
             }
             // Jumps that some parameters bring together make a pulse of no more than a step, which no one sees.
-            let shortest = if sure < 2 { COINCIDING } else { ONE };
+            let shortest = if sure < 2 { TUNING.coinciding_jumps } else { TUNING.one_jump };
             if !unknown && h <= shortest * self.duration {
                 continue;
             }
@@ -225,7 +199,7 @@ impl TimeFunctions {
                     |index: usize| (symbols[index].upper() - symbols[index].lower()) / symbols[index].magnitude();
                 share(i).total_cmp(&share(j))
             });
-            let splits = widest.filter(|_| sure < 2 && depth < DEEPEST && seen < MOST_PARTS);
+            let splits = widest.filter(|_| sure < 2 && depth < TUNING.deepest_part && seen < TUNING.most_parts_of_box);
             let Some(index) = splits.filter(|&index| symbols[index].upper() > symbols[index].lower()) else {
                 return false;
             };
@@ -259,8 +233,8 @@ impl Term {
         let [first, last] = [a, b].map(|t| self.over(&all.over(t, t), work).0);
         let beyond = share * self.size;
         let (least, most) = (first.lower().min(last.lower()) - beyond, first.upper().max(last.upper()) + beyond);
-        let part = |part: usize| a + (b - a) * part as f64 / PARTS as f64;
-        let within = (0..PARTS).all(|index| {
+        let part = |part: usize| a + (b - a) * part as f64 / TUNING.parts_of_step as f64;
+        let within = (0..TUNING.parts_of_step).all(|index| {
             let (value, _) = self.over(&all.over(part(index), part(index + 1)), work);
             least <= value.lower() && value.upper() <= most
         });
@@ -275,7 +249,7 @@ impl Switch {
         let during = |a: f64, b: f64| [&[Interval::new(a, b)], &symbols[1..]].concat();
         let (first, last) = (symbols[0].lower(), symbols[0].upper());
         let (mut low, mut high) = (first, last);
-        for _ in 0..MOST_CUTS {
+        for _ in 0..TUNING.most_cuts {
             let quarter = 0.25 * (high - low);
             let mut cut = |a: f64, b: f64| other.over(&during(a, b), work) == Switches::Never;
             match (cut(low, low + quarter), cut(high - quarter, high)) {
@@ -342,7 +316,7 @@ fn size(ranges: &Ranges, parameters: &[Interval], nominal: &[f64], duration: f64
     let (mut least, mut most) = (at(0.0).min(at(duration)), at(0.0).max(at(duration)));
     let mut pieces = vec![(0.0, duration, over(0.0, duration))];
     let mut width = f64::INFINITY;
-    while pieces.len() < PIECES {
+    while pieces.len() < TUNING.pieces_for_size {
         let extreme = |sign: f64| {
             let end = |piece: &(f64, f64, Interval)| if sign > 0.0 { piece.2.upper() } else { -piece.2.lower() };
             let index = (0..pieces.len()).max_by(|&i, &j| end(&pieces[i]).total_cmp(&end(&pieces[j])));

@@ -1,27 +1,11 @@
 //! One step after another that resolves the functions of the time, within a number of enclosures: functions with very
 //! short periods are refused in words, before hours go by.
 
-use super::resolution::{RESOLVED, TOO_FAST, TimeFunctions, Work};
+use super::resolution::{TimeFunctions, Work};
+use super::tuning::TUNING;
 use crate::assemble::System;
 use crate::simulate::diagnostics::place_of;
 use crate::simulate::error::SimulationError;
-
-/// Functions enclosed over a box before a search is given up: a minute or two.
-pub(in crate::simulate) const MOST_ENCLOSURES: usize = 100_000_000;
-
-/// Times at which the steps of a whole run are counted, of which the densest are left out: a pulse says nothing of the
-/// rest.
-const PLACES: usize = 61;
-const LEFT_OUT: usize = 4;
-
-/// Halvings of the share of a run that belongs to a place.
-const HALVINGS: u32 = 40;
-
-/// A count of steps may be this many times too large: steps are halved, and functions are looked at over halved ones.
-const UNCERTAIN: f64 = 8.0;
-
-/// A step may be so many times the one before.
-const GROWTH: f64 = 2.0;
 
 /// The steps of a run.
 pub(in crate::simulate) struct ResolvingSteps {
@@ -48,18 +32,20 @@ impl ResolvingSteps {
 
     fn refuse_too_many(&mut self, system: &System, most: usize) -> Result<(), SimulationError> {
         let duration = self.functions.duration();
-        let share = duration / PLACES as f64;
+        let share = duration / TUNING.counted_times as f64;
         // Times that no period of a function is a multiple of.
         let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
-        let mut steps: Vec<(f64, f64)> = (1..=PLACES)
+        let mut steps: Vec<(f64, f64)> = (1..=TUNING.counted_times)
             .map(|index| (1.0 - share / duration) * duration * (golden * index as f64).fract())
-            .map(|from| (from, self.resolved_step(from, share, share, HALVINGS)))
+            .map(|from| (from, self.resolved_step(from, share, share, TUNING.halvings_of_share)))
             .collect();
         steps.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.total_cmp(&b.0)));
-        steps.truncate(PLACES - LEFT_OUT);
+        steps.truncate(TUNING.counted_times - TUNING.densest_left_out);
         let expected: f64 = steps.iter().map(|(_, step)| share / step).sum();
         match steps.last() {
-            Some(&(from, step)) if expected > UNCERTAIN * most as f64 => Err(self.too_fast(system, from, step, most)),
+            Some(&(from, step)) if expected > TUNING.uncertain_count * most as f64 => {
+                Err(self.too_fast(system, from, step, most))
+            }
             _ => Ok(()),
         }
     }
@@ -67,7 +53,7 @@ impl ResolvingSteps {
     /// A part h of a step, halved until it resolves all functions, or so many times.
     fn resolved_step(&mut self, from: f64, step: f64, mut h: f64, halvings: u32) -> f64 {
         for _ in 0..halvings {
-            let share = if h < step { RESOLVED } else { TOO_FAST };
+            let share = if h < step { TUNING.resolved } else { TUNING.too_fast };
             if self.functions.are_resolved((from, from + h), h, share, &mut self.work) {
                 break;
             }
@@ -87,12 +73,12 @@ impl ResolvingSteps {
         step: f64,
         system: &System,
     ) -> Result<f64, SimulationError> {
-        if self.work.enclosures() > MOST_ENCLOSURES {
+        if self.work.enclosures() > TUNING.most_enclosures {
             let short = self.last.unwrap_or(step);
             return Err(self.too_fast(system, from, short, 0));
         }
         let (mut h, mut halvings) = (step, self.functions.halvings());
-        let most = self.last.map_or(f64::INFINITY, |last| GROWTH * last * (1.0 + 1e-9));
+        let most = self.last.map_or(f64::INFINITY, |last| TUNING.growth_of_steps * last * (1.0 + 1e-9));
         while h > most && halvings > 0 {
             h *= 0.5;
             halvings -= 1;

@@ -7,6 +7,7 @@
 //! rounding: the mechanism goes on smoothly, and the configuration is told as singular.
 
 use super::Visit;
+use super::tuning::TUNING;
 use crate::assemble::EquationId;
 use crate::numerics::Sample;
 use crate::simulate::control::Schedule;
@@ -16,18 +17,6 @@ use crate::simulate::error::{SimulationError, assembly_error};
 use crate::simulate::interruption::Interruption;
 use crate::simulate::simulator::Simulator;
 use crate::simulate::start::{Assembly, Orientation, Oriented};
-
-/// Corrections of a coordinate, in its scale, that do not leave the branch.
-const NEAR: f64 = 0.05;
-
-/// Of the second correction, as a share of the first: where it is more, another root is nearer than four corrections.
-const CONTRACTING: f64 = 0.25;
-
-/// First corrections below this, in the scales, say nothing of roots.
-const NEGLIGIBLE: f64 = 1e-9;
-
-/// Times that the way to a row is halved at most.
-const MOST_HALVINGS: u32 = 16;
 
 impl Simulator {
     /// Every row; where outputs are reduced to one number, every step between rows too.
@@ -91,7 +80,7 @@ impl Simulator {
                 let mut step = time - now;
                 // The shortest way to the other sign of the determinant.
                 let mut across = None;
-                let reached = (0..MOST_HALVINGS).any(|_| {
+                let reached = (0..TUNING.halvings_of_way).any(|_| {
                     let end = if step == time - now { time } else { now + step };
                     match assembly.advance_to(end, step, &mut branch) {
                         Advance::Near => {
@@ -144,7 +133,7 @@ impl Simulator {
         let mut now = 0.0;
         while now < 1.0 {
             let mut step = 1.0 - now;
-            let reached = (0..MOST_HALVINGS).any(|_| {
+            let reached = (0..TUNING.halvings_of_way).any(|_| {
                 let end: f64 = if step == 1.0 - now { 1.0 } else { now + step };
                 let between = |k: usize| nominal[k] + end * (sample[k] - nominal[k]);
                 followed.keep(&mut branch.before);
@@ -267,14 +256,14 @@ impl Assembly<'_> {
         let predicted = self.tile().values()[layout.q.clone()].to_vec();
         let first = self.correct_once();
         let second = self.correct_once();
-        let is_alone = first <= NEGLIGIBLE || second <= CONTRACTING * first;
+        let is_alone = first <= TUNING.negligible_correction || second <= TUNING.contracting * first;
         if !is_alone || !self.close() {
             return Advance::Far;
         }
         let moved = predicted.iter().zip(layout.q.clone()).zip(self.scale());
         let is_near = moved.into_iter().all(|((q, register), scale)| {
             // NaN is far.
-            ((self.tile().lane(register)[0] - q) / scale).abs() <= NEAR
+            ((self.tile().lane(register)[0] - q) / scale).abs() <= TUNING.near_correction
         });
         if !is_near {
             return Advance::Far;

@@ -13,6 +13,7 @@ mod kinematics;
 mod modes;
 mod rows;
 mod statics;
+pub(crate) mod tuning;
 
 pub use rows::reduced_rows;
 

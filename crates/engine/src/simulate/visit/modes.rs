@@ -1,6 +1,7 @@
 //! Modes of a sample: at its start, at its equilibrium, or in every row of its motion.
 
 use super::Visit;
+use super::tuning::TUNING;
 use crate::compile::Layout;
 use crate::numerics::Sample;
 use crate::simulate::control::Steps;
@@ -8,12 +9,9 @@ use crate::simulate::ensemble::{Channel, EnsembleRun, Observed, Reduction, Stop}
 use crate::simulate::error::{SimulationError, assembly_error};
 use crate::simulate::integrator::Integrator;
 use crate::simulate::interruption::Interruption;
-use crate::simulate::modal::{ALIKE, ModesThere, Vibrations};
+use crate::simulate::modal::{self, ModesThere, Vibrations};
 use crate::simulate::simulator::Simulator;
 use crate::simulate::start::Assembly;
-
-/// Steps from the nominal parameters to those of a sample whose modes are not like the nominal ones.
-const CONTINUATION_STEPS: usize = 8;
 
 /// States in rows (the layout's registers), and where they end.
 type States = (Vec<Vec<f64>>, Option<Stop>);
@@ -93,17 +91,18 @@ impl Simulator {
         is_alone: bool,
     ) -> Option<ModesThere> {
         let (direct, least) = vibrations.place(state, Some(nominal))?;
-        if least >= ALIKE || !is_alone {
+        if least >= modal::tuning::TUNING.alike_shapes || !is_alone {
             return Some(direct);
         }
         let mut known = nominal.clone();
-        for step in 1..=CONTINUATION_STEPS {
-            let share = step as f64 / CONTINUATION_STEPS as f64;
+        for step in 1..=TUNING.continuation_steps {
+            let share = step as f64 / TUNING.continuation_steps as f64;
             let of_parameter = |(parameter, value): (&crate::assemble::UncertainParameter, &f64)| {
                 parameter.nominal + share * (value - parameter.nominal)
             };
             let between: Sample = self.system.parameters.iter().zip(sample.iter()).map(of_parameter).collect();
-            let state = if step == CONTINUATION_STEPS { state.to_vec() } else { self.state_at_start(&between).ok()? };
+            let state =
+                if step == TUNING.continuation_steps { state.to_vec() } else { self.state_at_start(&between).ok()? };
             known = vibrations.place(&state, Some(&known))?.0;
         }
         Some(known)

@@ -4,11 +4,9 @@ use super::{criterion, piece, points, shown};
 use crate::export::allocation::shown_unit;
 use crate::export::report::{Section, plain_page};
 use crate::export::rounded::{rounded, shown as shown_in, significant};
+use crate::export::tuning::TUNING;
 use crate::grammar::display_unit::ShownUnit;
 use crate::results::{Allocation, DesignPoint, DesignStudy, DesignTrade, ToleranceZone};
-
-/// A smaller gain is not told.
-const SHOWN: f64 = 5e-4;
 
 /// The page with these figures.
 pub(super) fn page(design: &DesignStudy, figures: Vec<String>) -> String {
@@ -19,7 +17,7 @@ pub(super) fn page(design: &DesignStudy, figures: Vec<String>) -> String {
     ))];
     sections.push(all(design));
     let value = if design.is_priced() { "cost" } else { "worst case" };
-    if let Some(gain) = design.gain().filter(|gain| gain.abs() >= SHOWN) {
+    if let Some(gain) = design.gain().filter(|gain| gain.abs() >= TUNING.shown_gain) {
         sections.push(Section::Text(format!(
             "At the optimum without tolerances the {value} is {}; at the optimum with tolerances it is {} % {}.",
             design.nominal_point.as_ref().map_or_else(String::new, |point| objective(design, point.worst)),

@@ -1,15 +1,13 @@
 //! Convex hulls on the paper.
 
 use super::view::Px;
-
-/// Places that are nearer than this are one, px.
-const NEAR: f64 = 1.0;
+use crate::export::tuning::TUNING;
 
 /// The corners of the convex hull, in order (Andrew's monotone chain, Inf. Process. Lett. 9 (1979) 216); both ends of
 /// places on a line.
 pub(super) fn hull(mut places: Vec<Px>) -> Vec<Px> {
     places.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
-    places.dedup_by(|a, b| (*a - *b).norm() < NEAR);
+    places.dedup_by(|a, b| (*a - *b).norm() < TUNING.same_point);
     if places.len() < 3 {
         return places;
     }
@@ -17,7 +15,7 @@ pub(super) fn hull(mut places: Vec<Px>) -> Vec<Px> {
         let mut chain: Vec<Px> = Vec::new();
         for place in places {
             while let [.., a, b] = chain[..]
-                && (b - a).perp(&(place - a)) <= NEAR * (place - a).norm()
+                && (b - a).perp(&(place - a)) <= TUNING.same_point * (place - a).norm()
             {
                 chain.pop();
             }

@@ -20,6 +20,7 @@ use self::label::Labels;
 use self::view::{PLANE, Projection, Px, SPACE, View};
 use super::error::ExportError;
 use super::folder::AtomicFiles;
+use super::tuning::TUNING;
 use crate::elements::Glyph;
 use crate::results::{Drawing, DrawnBody, DrawnLength};
 
@@ -52,9 +53,6 @@ const NAME: &str = "mechanism.svg";
 
 /// Margin of the drawing, px.
 const MARGIN: f64 = 70.0;
-
-/// Most bodies and points of which the names are written.
-const MOST_NAMES: usize = 150;
 
 /// Writes the picture `mechanism.svg`, and returns its path.
 ///
@@ -148,7 +146,7 @@ fn panel(drawing: &Drawing, view: &View, corner: Px, size: Px) -> Group {
 /// Names of bodies, and of points where there are few.
 fn names(drawing: &Drawing, view: &View, mut group: Group, labels: &mut Labels) -> Group {
     let points: usize = drawing.bodies.iter().map(|body| body.points.len()).sum();
-    if drawing.bodies.len() > MOST_NAMES {
+    if drawing.bodies.len() > TUNING.most_names {
         return group;
     }
     let middle = |body: &DrawnBody| {
@@ -158,7 +156,7 @@ fn names(drawing: &Drawing, view: &View, mut group: Group, labels: &mut Labels) 
     for body in &drawing.bodies[1..] {
         group = group.add_all(labels.beside(middle(body), Px::new(0.0, -1.0), &body.name, 13.0, "name"));
     }
-    if points <= MOST_NAMES {
+    if points <= TUNING.most_names {
         for body in &drawing.bodies {
             for point in body.points.iter().filter(|point| !point.name.is_empty()) {
                 let at = view.px(point.position);

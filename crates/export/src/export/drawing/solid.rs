@@ -12,10 +12,8 @@ use super::hull::hull;
 use super::view::{Px, View};
 use crate::elements::Form;
 use crate::export::solid::{Face, SolidFrame, core, faces, normal, polyline, reach};
+use crate::export::tuning::TUNING;
 use crate::results::{Drawing, DrawnSolid};
-
-/// Edges of faces that are turned against one another by less than this are not drawn: cosine.
-const SMOOTH: f64 = 0.9;
 
 /// Half the width of a plane, and the distance of its hatching, px.
 const PLANE: f64 = 90.0;
@@ -141,7 +139,7 @@ fn polyhedron(faces: &[Face], frame: &SolidFrame, view: &View) -> Vec<Path> {
         fill = fill.close();
     }
     let is_sharp = |normals: &[Vector3<f64>]| match normals {
-        [first, second] => first.dot(second) < SMOOTH,
+        [first, second] => first.dot(second) < TUNING.smooth_edge,
         _ => true,
     };
     let sharp = edges.iter().filter(|(_, normals)| is_sharp(normals));

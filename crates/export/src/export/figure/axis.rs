@@ -2,10 +2,8 @@
 //! precision.
 
 use super::prefix::ScaleUnit;
+use crate::export::tuning::TUNING;
 use crate::grammar::display_unit::ShownUnit;
-
-/// A range that is smaller than this, relative to its size, is rounding noise.
-const ROUNDING: f64 = 1e-12;
 
 /// A linear axis. Data in SI is divided by the unit's factor before it is drawn.
 #[derive(Clone, Debug, PartialEq)]
@@ -46,7 +44,7 @@ impl Axis {
         // Scaled first: the difference of the unscaled ends could overflow.
         (min, max) = (min / unit.factor, max / unit.factor);
         let size = min.abs().max(max.abs());
-        let is_constant = is_zero || max - min <= (ROUNDING * size).max(noise / unit.factor);
+        let is_constant = is_zero || max - min <= (TUNING.rounding_of_motion * size).max(noise / unit.factor);
         if is_constant {
             // In the middle, with some room.
             let room = if is_zero || size == 0.0 { 1.0 } else { 0.1 * size };

@@ -3,12 +3,7 @@
 use serde::Serialize;
 
 use super::axis::Axis;
-
-/// Rows that a series has at most; longer series have the extremes of several rows in one.
-const ROWS: usize = 400;
-
-/// The part of an axis' range to which numbers are written.
-const RESOLUTION: f64 = 1e-4;
+use crate::export::tuning::TUNING;
 
 /// All that a figure of courses says of itself.
 #[derive(Clone, Debug, Serialize)]
@@ -91,7 +86,7 @@ pub struct SeriesData {
 
 /// How many rows become one.
 fn bucket(rows: usize) -> usize {
-    rows.div_ceil(ROWS).max(1)
+    rows.div_ceil(TUNING.rows_of_series).max(1)
 }
 
 /// Times of the rows, s: the middle one of each.
@@ -101,7 +96,7 @@ pub fn times(times: &[f64]) -> Vec<f64> {
 
 /// Extremes of two curves in each row, in the unit of an axis.
 pub fn extremes(lower: &[f64], upper: &[f64], axis: &Axis) -> [Vec<Option<f64>>; 2] {
-    let step = RESOLUTION * (axis.max - axis.min);
+    let step = TUNING.resolution_of_numbers * (axis.max - axis.min);
     let of = |values: &[f64], choose: fn(f64, f64) -> f64| -> Vec<Option<f64>> {
         let rows = values.chunks(bucket(values.len()));
         let extreme = rows.map(|rows| rows.iter().copied().filter(|x| x.is_finite()).reduce(choose));

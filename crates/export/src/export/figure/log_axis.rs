@@ -1,6 +1,7 @@
 //! A plot's logarithmic axis: whole decades at its ends, labels such as 10⁻³.
 
 use super::prefix::superscript;
+use crate::export::tuning::TUNING;
 
 /// A tick: its place, and its label where it has one.
 pub type Tick = (f64, Option<String>);
@@ -11,9 +12,6 @@ pub struct LogAxis {
     first: i32,
     last: i32,
 }
-
-/// An axis with more decades than this has no ticks within them.
-const MANY: i32 = 8;
 
 impl LogAxis {
     /// The axis for `values`; whatever is not positive and finite is passed over.
@@ -37,13 +35,13 @@ impl LogAxis {
     /// One at each decade with a label (every second, third, … of many), and one at 2, 3, … 9 times it without.
     pub fn ticks(&self) -> Vec<Tick> {
         let decades = self.last - self.first;
-        let every = 1 + (decades - 1) / MANY;
+        let every = 1 + (decades - 1) / TUNING.many_decades;
         let mut ticks = Vec::new();
         for exponent in self.first..=self.last {
             let decade = f64::from(exponent - self.first) / f64::from(decades);
             let label = (exponent - self.first) % every == 0;
             ticks.push((decade, label.then(|| format!("10{}", superscript(exponent)))));
-            if exponent < self.last && decades <= MANY {
+            if exponent < self.last && decades <= TUNING.many_decades {
                 ticks.extend(
                     (2..10).map(|times| (decade + symdiff::math::log10(f64::from(times)) / f64::from(decades), None)),
                 );

@@ -9,16 +9,13 @@ use super::data::{PanelData, ScaleData};
 use super::document::{Anchor, group, line, text, text_width, upright};
 use super::path::{Point, line_data, px, runs, thinned};
 use super::style::{Color, Hue};
+use crate::export::tuning::TUNING;
 use crate::results::Band;
 
 /// Opacity of the error around a band, relative to the band's own.
 const LIGHTER: f64 = 0.5;
 /// Distance of the lines of a hatched band, px.
 const HATCH: f64 = 6.0;
-/// A hatched part is at least so wide, px.
-const SEEN: f64 = 6.0;
-/// How far beyond the panel points are kept, in heights of the panel.
-const BEYOND: f64 = 2.0;
 
 /// How a band is drawn.
 #[derive(Clone, Debug)]
@@ -234,7 +231,7 @@ impl Panel<'_> {
         for row in rows.clone().filter(|&row| unresolved[row]) {
             // Until the next row is reached, and some way if that is near.
             let mut end = row + 1;
-            while end + 1 < rows.end && across(end) - across(row) < SEEN {
+            while end + 1 < rows.end && across(end) - across(row) < TUNING.narrowest_hatched {
                 end += 1;
             }
             let end = (end + 1).min(rows.end);
@@ -257,7 +254,7 @@ impl Panel<'_> {
     /// Where a point of the data lies on the page; points far beyond the panel are moved nearer.
     pub fn place(&self, t: f64, y: f64) -> Point {
         let across = self.left + self.x.place(t) * (self.right - self.left);
-        let up = self.y.place(y).clamp(-BEYOND, 1.0 + BEYOND);
+        let up = self.y.place(y).clamp(-TUNING.beyond_panel, 1.0 + TUNING.beyond_panel);
         (across, self.bottom - up * (self.bottom - self.top))
     }
 

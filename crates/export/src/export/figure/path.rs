@@ -4,11 +4,10 @@
 //! shows of a curve (Jugel et al., Proc. VLDB Endow. 7 (2014) 797). Of the rest, points on a straight line between
 //! others go (Douglas and Peucker, Cartographica 10 (1973) 112).
 
+use crate::export::tuning::TUNING;
+
 /// A point, px.
 pub type Point = (f64, f64);
-
-/// How far a point may be from the line that is drawn without it, px.
-const TOLERANCE: f64 = 0.05;
 
 /// Runs of rows at which all of `values` are finite.
 pub fn runs<const N: usize>(values: [&[f64]; N]) -> Vec<std::ops::Range<usize>> {
@@ -76,7 +75,7 @@ fn simplified(points: &[Point]) -> Vec<Point> {
         let distance = |at: Point| ((at.0 - from.0) * dy - (at.1 - from.1) * dx).abs() / length;
         let farthest = (first + 1..last).map(|index| (index, distance(points[index])));
         let farthest = farthest.reduce(|most, next| if next.1 > most.1 { next } else { most });
-        if let Some((index, _)) = farthest.filter(|(_, distance)| *distance > TOLERANCE) {
+        if let Some((index, _)) = farthest.filter(|(_, distance)| *distance > TUNING.tolerance_of_path) {
             stays[index] = true;
             open.extend([(first, index), (index, last)]);
         }

@@ -1,13 +1,11 @@
 //! Units as a scale shows them: with the prefix that makes its numbers short (kN, µm), or a power of ten where there is
 //! no such prefix.
 
+use crate::export::tuning::TUNING;
 use crate::grammar::display_unit::ShownUnit;
 
 /// Sizes that read well without a prefix.
 const PLAIN: std::ops::Range<f64> = 0.1..1e4;
-
-/// A number that is too long: prefixes of areas and volumes are far apart.
-const LONG: f64 = 1e5;
 
 /// Powers of a thousand that a scale may take out; beyond them the power itself would under- or overflow.
 const EXPONENTS: std::ops::RangeInclusive<i32> = -306..=306;
@@ -57,7 +55,7 @@ impl ScaleUnit {
         // A prefix of m² counts twice.
         let step = 3 * power;
         let exponent = step * (symdiff::math::log10(size) / f64::from(step)).floor() as i32;
-        let is_short = size / 10f64.powi(exponent.clamp(*EXPONENTS.start(), *EXPONENTS.end())) < LONG;
+        let is_short = size / 10f64.powi(exponent.clamp(*EXPONENTS.start(), *EXPONENTS.end())) < TUNING.long_number;
         if let Some(symbol) = prefixed(first, exponent / power).filter(|_| is_short) {
             return Self { text: pretty_unit(&format!("{symbol}{rest}")), factor: 10f64.powi(exponent) };
         }

@@ -10,14 +10,12 @@ use super::error::ExportError;
 use super::folder::AtomicFiles;
 use super::rounded::rounded;
 use super::stems::unique_stems;
+use super::tuning::TUNING;
 use crate::grammar::display_unit::ShownUnit;
 use crate::results::{Fit, FitParameter};
 
 /// The overlay's file.
 pub const FIT_OVERLAY: &str = "fit.yaml";
-
-/// Digits of deviations.
-const DIGITS: i32 = 4;
 
 /// Writes all files; the overlay where a parameter is consistent.
 ///
@@ -85,7 +83,9 @@ fn overlay(fit: &Fit) -> String {
 fn piece(own: &FitParameter, hull: [f64; 2], middle: f64) -> String {
     let unit = ShownUnit::of(&own.display, &own.unit);
     let [lower, upper] = hull.map(|end| unit.of_si(end));
-    let digit = 10_f64.powi(symdiff::math::log10((upper - lower).max(f64::MIN_POSITIVE)).floor() as i32 + 1 - DIGITS);
+    let digit = 10_f64.powi(
+        symdiff::math::log10((upper - lower).max(f64::MIN_POSITIVE)).floor() as i32 + 1 - TUNING.digits_of_deviations,
+    );
     let text = rounded((unit.of_si(middle) / digit).round() * digit);
     let value: f64 = text.parse().unwrap_or(middle);
     // A part in a million of the last digit covers the rounding of the differences.

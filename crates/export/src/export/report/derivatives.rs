@@ -4,11 +4,9 @@ use serde::Serialize;
 
 use super::packing::floats;
 use crate::export::tornado::derivative_in;
+use crate::export::tuning::TUNING;
 use crate::grammar::display_unit::ShownUnit;
 use crate::results::{Bounds, OutputDerivatives, Summary};
-
-/// Parameters of an output, those with the largest influence in any row.
-const MOST: usize = 12;
 
 /// Derivatives of a run's outputs.
 #[derive(Serialize)]
@@ -61,7 +59,7 @@ fn of_output<'r>(own: &OutputDerivatives, bounds: &'r Bounds, summary: &'r Summa
         let (_, unit) = derivative_in(unit, below, 1.0);
         OfParameter { name: &parameter.name, unit, half_width: half(axis) / below.si, values: floats(&values) }
     };
-    let parameters: Vec<OfParameter> = axes.into_iter().take(MOST).map(of_parameter).collect();
+    let parameters: Vec<OfParameter> = axes.into_iter().take(TUNING.most_derivatives).map(of_parameter).collect();
     (!parameters.is_empty()).then_some(OfOutput { name: &output.name, unit: unit.text, parameters })
 }
 

@@ -1,9 +1,7 @@
 //! Differences from a recorded snapshot.
 
 use super::read::{ColumnKind, Curve, Output, Snapshot};
-
-/// A stated error that grew by more than this counts as moved: it would hide all else.
-const GROWN: f64 = 2.0;
+use crate::export::tuning::TUNING;
 
 /// A curve that moved by more than the errors stated then and now, where it did so most.
 #[derive(Clone, Debug, PartialEq)]
@@ -99,7 +97,7 @@ fn of_curve(then: &Output, now: &Output, curve: &Curve, shared: &[(usize, usize)
     for &(row_then, row_now) in shared {
         let (before, after) = (&earlier.cells[row_then], &curve.cells[row_now]);
         let allowed = match curve.kind {
-            ColumnKind::Error => GROWN * value(before) + finest(then, row_then),
+            ColumnKind::Error => TUNING.grown_error * value(before) + finest(then, row_then),
             _ => {
                 stated_error(then, curve, row_then)
                     + stated_error(now, curve, row_now)

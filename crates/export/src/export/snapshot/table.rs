@@ -4,16 +4,8 @@ use std::path::{Path, PathBuf};
 
 use crate::export::error::ExportError;
 use crate::export::folder::write_pages;
+use crate::export::tuning::TUNING;
 use crate::results::{Bounds, OutputBounds};
-
-/// Times that are shown of a run.
-const TIMES: usize = 10;
-
-/// Digits that are shown of an output's span.
-const DIGITS: i32 = 5;
-
-/// Digits that are shown of a value, at most: a span may be rounding errors alone.
-const MOST_DIGITS: i32 = 13;
 
 /// A snapshot's table: of each output its name with the unit, headings, and ten rows in even distances to the end of
 /// the run.
@@ -68,7 +60,8 @@ pub fn write_snapshot(folder: &Path, name: &str, file: &str) -> Result<Vec<PathB
 /// The rows that are shown.
 fn rows(count: usize) -> Vec<usize> {
     let Some(last) = count.checked_sub(1) else { return Vec::new() };
-    let mut rows: Vec<usize> = (1..=TIMES).map(|index| index * last / TIMES).collect();
+    let mut rows: Vec<usize> =
+        (1..=TUNING.times_of_snapshot).map(|index| index * last / TUNING.times_of_snapshot).collect();
     rows.dedup();
     rows
 }
@@ -79,7 +72,7 @@ fn times(times: &[f64]) -> usize {
     if duration > 0.0 { (2 - exponent(duration)).max(4) as usize } else { 4 }
 }
 
-/// Decimals that show [`DIGITS`] digits of everything the output does.
+/// Decimals that show `TUNING.digits_of_span` digits of everything the output does.
 fn decimals(output: &OutputBounds) -> usize {
     let bands = output.bands.iter().flat_map(|band| band.lower.iter().chain(&band.upper));
     let values = output.nominal.iter().chain(bands).filter(|value| value.is_finite());
@@ -89,8 +82,8 @@ fn decimals(output: &OutputBounds) -> usize {
     let finest = |size: f64, digits: i32| digits - 1 - exponent(size);
     let decimals = match (span, largest) {
         _ if !(largest > 0.0 && largest.is_finite()) => 0,
-        (0.0, _) => finest(largest, DIGITS),
-        _ => finest(span, DIGITS).min(finest(largest, MOST_DIGITS)),
+        (0.0, _) => finest(largest, TUNING.digits_of_span),
+        _ => finest(span, TUNING.digits_of_span).min(finest(largest, TUNING.most_digits_of_value)),
     };
     decimals.max(0) as usize
 }

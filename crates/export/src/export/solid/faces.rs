@@ -3,10 +3,11 @@
 use nalgebra::Vector3;
 use symdiff::math;
 
-use super::flat::{AROUND, normal, polyline};
+use super::flat::{normal, polyline};
 use super::frame::SolidFrame;
 use crate::elements::Form;
 use crate::elements::effects::faces_of_hull;
+use crate::export::tuning::TUNING;
 
 /// A flat polygon.
 pub(in crate::export) type Face = Vec<[f64; 3]>;
@@ -59,10 +60,10 @@ fn of_box(size: [f64; 3]) -> Vec<Face> {
 /// A circle about z.
 fn ring(radius: f64) -> Face {
     let at = |step: usize| {
-        let angle = std::f64::consts::TAU * step as f64 / AROUND as f64;
+        let angle = std::f64::consts::TAU * step as f64 / TUNING.pieces_of_turn as f64;
         [radius * math::cos(angle), radius * math::sin(angle), 0.0]
     };
-    (0..AROUND).map(at).collect()
+    (0..TUNING.pieces_of_turn).map(at).collect()
 }
 
 /// A plate about z = 0; one of no thickness has two sides.
@@ -87,8 +88,10 @@ fn prism(outline: &[[f64; 3]], thickness: f64) -> Vec<Face> {
 fn wall(radius: f64) -> Vec<Face> {
     let (inner, outer) = (ring(radius), ring(1.1 * radius));
     let half = 0.1 * radius;
-    let at = |ring: &Face, index: usize, z: f64| [ring[index % AROUND][0], ring[index % AROUND][1], z];
-    let pieces = (0..AROUND).flat_map(|index| {
+    let at = |ring: &Face, index: usize, z: f64| {
+        [ring[index % TUNING.pieces_of_turn][0], ring[index % TUNING.pieces_of_turn][1], z]
+    };
+    let pieces = (0..TUNING.pieces_of_turn).flat_map(|index| {
         let quad = |a: (&Face, f64), b: (&Face, f64)| {
             vec![at(a.0, index, a.1), at(a.0, index + 1, a.1), at(b.0, index + 1, b.1), at(b.0, index, b.1)]
         };

@@ -4,9 +4,7 @@ use nalgebra::Vector3;
 use symdiff::math;
 
 use crate::elements::Bend;
-
-/// Straight pieces of a whole turn.
-pub(super) const AROUND: usize = 72;
+use crate::export::tuning::TUNING;
 
 /// The points of a line with arcs as short straight pieces, closed by itself where it is so.
 pub(in crate::export) fn polyline(bends: &[Bend<f64>], is_closed: bool) -> Vec<[f64; 3]> {
@@ -29,7 +27,7 @@ fn arc(from: [f64; 3], to: [f64; 3], radius: f64) -> Vec<[f64; 3]> {
     // The centre is on the left of the way where the arc turns left.
     let centre = [0.5 * (from[0] + to[0]) - height * y / chord, 0.5 * (from[1] + to[1]) + height * x / chord];
     let turn = 2.0 * math::atan2(0.5 * chord, height.abs()) * radius.signum();
-    let pieces = ((turn.abs() / std::f64::consts::TAU * AROUND as f64 - 1e-9).ceil() as usize).max(1);
+    let pieces = ((turn.abs() / std::f64::consts::TAU * TUNING.pieces_of_turn as f64 - 1e-9).ceil() as usize).max(1);
     let offset = [from[0] - centre[0], from[1] - centre[1]];
     let at = |piece: usize| {
         let angle = turn * piece as f64 / pieces as f64;
@@ -79,7 +77,7 @@ mod tests {
         let bend = |to: [f64; 3], radius: Option<f64>| Bend { to, radius };
         let line = [bend([1.0, 0.0, 0.0], None), bend([0.0, 1.0, 0.0], Some(1.0))];
         let points = polyline(&line, false);
-        assert_eq!(points.len(), 2 + AROUND / 4 - 1);
+        assert_eq!(points.len(), 2 + TUNING.pieces_of_turn / 4 - 1);
         assert!(points.iter().all(|[x, y, _]| (math::hypot(*x, *y) - 1.0).abs() < 1e-12), "{points:?}");
         let right = [bend([1.0, 0.0, 0.0], None), bend([0.0, 1.0, 0.0], Some(-1.0))];
         assert!(polyline(&right, false).iter().all(|[x, y, _]| (math::hypot(x - 1.0, y - 1.0) - 1.0).abs() < 1e-12));

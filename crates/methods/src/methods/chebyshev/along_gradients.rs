@@ -1,12 +1,13 @@
 //! Ends that were followed along gradients as bounds, in place of a surrogate.
 
+use super::tuning::TUNING;
 use crate::methods::ensemble::Simulated;
 use crate::methods::followed::{Followed, FollowedEnds};
 use crate::methods::result::{BandBuilder, MethodResult};
 
 /// For more parameters a sparse grid is not tried where ends that were followed along gradients miss the tolerance: its
 /// nodes and its own search for ends grow with a power of their number.
-pub const MOST_ON_GRIDS: usize = 12;
+pub const MOST_ON_GRIDS: usize = TUNING.most_on_grids;
 
 /// Whether they are the bounds of a study with so many parameters, which may keep a surrogate: that is one of the whole
 /// box, and of few parameters a grid has the smaller error. `is_within`: whether the ends of a row meet the tolerance.

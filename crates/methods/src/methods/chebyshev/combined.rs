@@ -11,23 +11,12 @@ use symdiff::jet::JetSpace;
 use symdiff::taylor_model::ModelSpace;
 
 use super::range_search::{Functions, Previous, RangeSearch};
+use super::tuning::TUNING;
 use crate::methods::closure::Closure;
 use crate::methods::ensemble::{Combination, DenseMotions, Ensemble, EnsembleError, Sampling, Simulated};
 use crate::methods::proof::{EnclosedRow, EnclosureEnd, Proof};
 use crate::methods::validation::Validation;
 use crate::numerics::{CutMotions, ParameterBox, Range, Sample, largest};
-
-/// A combination's range is searched for as that of a polynomial of this degree, and more closely where that is too
-/// low.
-const DEGREE: u8 = 8;
-
-/// Share of a combination's range by which its values beside an end may exceed it, and the distance in ξ of these
-/// values.
-const EXCEEDED: f64 = 1e-6;
-const BESIDE: f64 = 1e-3;
-
-/// Halvings that find where a combination has a value, to the last bit.
-const HALVINGS: usize = 60;
 
 /// Motions of an ensemble over lines through its box.
 pub(in crate::methods) struct Combined<'e> {
@@ -161,7 +150,7 @@ impl<'e> Line<'e> {
         let own: Vec<f64> = self.parameters.iter().map(|&parameter| sample[parameter]).collect();
         let wanted = self.value(&own);
         let [mut below, mut above] = [-1.0, 1.0];
-        for _ in 0..HALVINGS {
+        for _ in 0..TUNING.halvings_of_combination {
             let middle = 0.5 * (below + above);
             let end = if self.value(&self.at(middle)) <= wanted { &mut below } else { &mut above };
             *end = middle;
@@ -176,7 +165,7 @@ fn ends_of(k: usize, function: &dyn Fn(&[f64]) -> f64) -> Option<[Vec<f64>; 2]> 
     let search = RangeSearch::new(k);
     let functions = Functions {
         outputs: vec![0],
-        degrees: &vec![DEGREE; k],
+        degrees: &vec![TUNING.degree_of_combination; k],
         are_polynomials: false,
         rounding: &[0.0],
         places: &[],
@@ -187,14 +176,14 @@ fn ends_of(k: usize, function: &dyn Fn(&[f64]) -> f64) -> Option<[Vec<f64>; 2]> 
     let beside: Vec<Vec<f64>> = found.places.iter().flat_map(|end| points_beside(end)).collect();
     let exceeded = largest(evaluate(&[0], &beside).into_iter().map(|value| found.range.distance(value)));
     // Written so that NaN is no range.
-    let is_found = found.range.width().is_finite() && exceeded <= EXCEEDED * found.range.width();
+    let is_found = found.range.width().is_finite() && exceeded <= TUNING.exceeded * found.range.width();
     is_found.then_some(found.places)
 }
 
 /// A little to both sides of a point along each axis, inside of the box.
 fn points_beside(point: &[f64]) -> impl Iterator<Item = Vec<f64>> + '_ {
     (0..point.len()).flat_map(move |axis| {
-        [-BESIDE, BESIDE].map(|by| {
+        [-TUNING.beside_end, TUNING.beside_end].map(|by| {
             let mut beside = point.to_vec();
             beside[axis] = (beside[axis] + by).clamp(-1.0, 1.0);
             beside

@@ -3,10 +3,10 @@
 //! The independent coordinates are expanded, from which outputs follow (`composition`), or outputs (the paper's).
 //! The degree is given, or grows until a tolerance is met (`adaptive`); of outputs too (`outputs_alone`).
 
-mod adaptive;
+pub(super) mod adaptive;
 mod along_gradients;
 mod combined;
-mod composition;
+pub(super) mod composition;
 mod detail;
 mod estimator;
 mod outputs_alone;
@@ -16,6 +16,7 @@ pub(super) mod segments;
 mod sensitivity;
 mod sub_box;
 mod total_degree;
+pub(crate) mod tuning;
 
 use super::BoundsRequest;
 use super::ensemble::{Ensemble, EnsembleError, Interrupted, Observed, Sampling, Simulated, Until, lines};
@@ -32,19 +33,13 @@ use adaptive::{Goal, OutputGoal};
 pub use along_gradients::MOST_ON_GRIDS;
 pub use combined::ends_of_combinations;
 pub use composition::can_compose;
-use composition::{BLOCK, Composer, NodeMotions, Row};
+use composition::{Composer, NodeMotions, Row};
 use estimator::RangeEstimator;
 use outputs_alone::OutputsAlone;
 use polynomials::expanded;
 use range_search::{Previous, RangeSearch};
 use sensitivity::SensitivityAnalysis;
-
-/// The least share of a tolerance that is left to the surrogate, whatever the steps take.
-const LEAST_SHARE: f64 = 0.25;
-
-/// Highest degree, and most nodes along an axis.
-pub(super) const MOST_ORDER: usize = 200;
-pub(super) const MOST_NODES: usize = 1000;
+use tuning::TUNING;
 
 const EXPAND: [(&str, Expand); 2] = [("coordinates", Expand::Coordinates), ("output", Expand::Output)];
 
@@ -120,10 +115,10 @@ impl Chebyshev {
     pub const ADAPTIVE: Self = Self { degree: Degree::Adaptive, expand: Expand::Coordinates, range: RangeKind::Tight };
 
     /// Most parameters for which full grids are the default.
-    pub const FEW: usize = 3;
+    pub const FEW: usize = TUNING.few_parameters;
 
     /// Degree where a model asks for none.
-    pub const ORDER: usize = 5;
+    pub const ORDER: usize = TUNING.order;
 
     /// For a request without a degree: [`ORDER`](Self::ORDER), or adaptive where there is a tolerance or there are many
     /// parameters.
@@ -138,9 +133,11 @@ impl Chebyshev {
         uncertain: &[String],
         tolerance: Option<f64>,
     ) -> Option<Self> {
-        let order = request::per_parameter(reader, fields, "order", uncertain, 1..=MOST_ORDER, Self::ORDER);
+        let order = request::per_parameter(reader, fields, "order", uncertain, 1..=TUNING.most_order, Self::ORDER);
         let nodes = match fields.get("nodes") {
-            Some(_) => request::per_parameter(reader, fields, "nodes", uncertain, 2..=MOST_NODES, Self::ORDER + 1),
+            Some(_) => {
+                request::per_parameter(reader, fields, "nodes", uncertain, 2..=TUNING.most_nodes, Self::ORDER + 1)
+            }
             None => order.as_ref().map(|order| order.iter().map(|order| order + 1).collect()),
         };
         let expand = match fields.get("expand") {
@@ -319,7 +316,7 @@ fn adapted(
         let missed = |time: &f64| time.is_nan() || *time > allowed;
         let rows = if span > 0.0 { time.iter().position(missed).unwrap_or(ensemble.rows()) } else { 0 };
         let time = largest(time[..rows].iter().copied());
-        OutputGoal { allowed: (allowed - time).max(LEAST_SHARE * allowed), rows }
+        OutputGoal { allowed: (allowed - time).max(TUNING.least_share * allowed), rows }
     };
     let goal = Goal { outputs: (0..ensemble.outputs()).map(of_output).collect(), budget: request.budget, spent };
     if let Some(found) = segments::adapted(ensemble, &goal, validation)? {
@@ -376,7 +373,7 @@ fn composed(
             (found, kept)
         };
         let motions = NodeMotions { times: &times, values, stride, courses: &[] };
-        match composer.rows(surrogate, domain, motions, true, BLOCK, look) {
+        match composer.rows(surrogate, domain, motions, true, composition::tuning::TUNING.rows_in_order, look) {
             Ok(found) => {
                 for (row, (estimates, row_kept)) in rows.zip(found) {
                     kept.iter_mut().for_each(|kept| kept.extend(row_kept.clone()));

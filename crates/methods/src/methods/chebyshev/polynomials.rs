@@ -3,6 +3,8 @@
 use rayon::prelude::*;
 
 use super::sensitivity::{Predicted, SensitivityAnalysis};
+use super::tuning::TUNING;
+use crate::methods;
 use crate::methods::ensemble::{Ensemble, EnsembleError, Observed, Sampling, Simulated, Until};
 use crate::methods::followed::Sensitivity;
 use crate::methods::kept::KeptRow;
@@ -11,12 +13,6 @@ use crate::methods::validation::Validation;
 use crate::numerics::{
     Extent, PolynomialRange, Range, Sample, SparseWork, Surrogate, SurrogateWork, corners, truncation,
 };
-
-/// What varies by no more than this share of its size is rounding.
-const ROUNDING: f64 = 1e-10;
-
-/// Most parameters whose corners are looked at beside the samples.
-const MOST_CORNERS: usize = 10;
 
 /// Polynomials through the outputs' own samples.
 pub(super) struct Polynomials<'a> {
@@ -49,7 +45,7 @@ impl Polynomials<'_> {
         let mut found = analysis.of_row(self, &extents);
         for (own, extent) in found.iter_mut().zip(&extents) {
             let size = extent.range.lower.abs().max(extent.range.upper.abs());
-            if extent.range.width() <= rounding.max(ROUNDING * size) {
+            if extent.range.width() <= rounding.max(methods::tuning::TUNING.rounding_of_width * size) {
                 own.main.iter_mut().chain(&mut own.total).for_each(|share| *share = 0.0);
             }
         }
@@ -60,7 +56,7 @@ impl Polynomials<'_> {
     fn extents(&self) -> Vec<Extent> {
         let mut points = self.surrogate.samples().to_vec();
         let k = points.first().map_or(0, Vec::len);
-        if k <= MOST_CORNERS {
+        if k <= TUNING.most_corners {
             points.extend(corners(k, 1 << k));
         }
         let every: Vec<usize> = (0..self.outputs()).collect();

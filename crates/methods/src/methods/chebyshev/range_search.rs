@@ -3,26 +3,8 @@
 
 use std::convert::Infallible;
 
+use super::tuning::TUNING;
 use crate::numerics::{Extent, ExtremeSearch, Extremes, Range, Separation, extremes, extremes_from, largest, spread};
-
-/// For so many parameters that act together ranges are found on a lattice.
-const MOST_PARAMETERS: usize = 3;
-
-/// Fewest intervals of the first lattice along an axis, by the number of its axes.
-const LEAST_INTERVALS: [usize; MOST_PARAMETERS] = [16, 8, 6];
-
-/// Intervals for each degree: of what is composed of polynomials, which is looked at more closely where it asks for it,
-/// and of polynomials.
-const COMPOSED: [usize; MOST_PARAMETERS] = [2, 2, 1];
-const POLYNOMIAL: [usize; MOST_PARAMETERS] = [4, 4, 2];
-
-/// Points for each parameter at which the result of climbs is checked.
-const CHECKS: usize = 16;
-/// What a check may find beyond the range, as a share of it, before the search begins anew.
-const BEYOND: f64 = 1e-3;
-
-/// A sum of functions may be off by this share of its range at the range's ends.
-const SUM: f64 = 1e-8;
 
 /// The extremes of each output in the row before, where they were searched for by climbs.
 pub(super) type Previous = Vec<Option<Extremes>>;
@@ -46,13 +28,9 @@ pub(super) struct Functions<'f> {
     pub evaluate: &'f Evaluate<'f>,
 }
 
-/// Outputs that are searched together: each is known at the points of all. Of more, memory and time would grow with the
-/// square of their number.
-const TOGETHER: usize = 64;
-
 /// Number of the block of outputs that are searched together with this one.
 pub(super) const fn block(output: usize) -> usize {
-    output / TOGETHER
+    output / TUNING.outputs_together
 }
 
 /// How ranges over a box are found.
@@ -67,8 +45,11 @@ impl RangeSearch {
     /// For k parameters.
     pub fn new(k: usize) -> Self {
         // Mirrored, they are apart from the search's own.
-        let checks = spread(k, CHECKS * k).into_iter().map(|xi| xi.into_iter().rev().map(|xi| -xi).collect()).collect();
-        let climbs = (k > MOST_PARAMETERS).then(|| ExtremeSearch::new(k));
+        let checks = spread(k, TUNING.checks_of_climbs * k)
+            .into_iter()
+            .map(|xi| xi.into_iter().rev().map(|xi| -xi).collect())
+            .collect();
+        let climbs = (k > TUNING.lattice_parameters).then(|| ExtremeSearch::new(k));
         Self { separation: Separation::new(k), climbs, checks }
     }
 
@@ -142,7 +123,7 @@ impl RangeSearch {
         let checked = evaluate(&self.checks);
         let lines = || checked.chunks_exact(self.checks.len());
         let beyond = |(found, line): (&Extremes, &[f64])| {
-            line.iter().any(|&value| found.range.distance(value) > BEYOND * found.range.width())
+            line.iter().any(|&value| found.range.distance(value) > TUNING.beyond_range * found.range.width())
         };
         if found.iter().zip(lines()).any(beyond) {
             let places = [places, &self.checks].concat();
@@ -167,7 +148,7 @@ impl RangeSearch {
                 let whole: Vec<Vec<f64>> = points.iter().map(|xi| self.separation.embed(group, xi)).collect();
                 (functions.evaluate)(outputs, &whole)
             };
-            let parts = if group.len() <= MOST_PARAMETERS {
+            let parts = if group.len() <= TUNING.lattice_parameters {
                 extremes(&functions.intervals(group), &functions.rounding(outputs), evaluate)
             } else {
                 let search = ExtremeSearch::new(group.len());
@@ -202,7 +183,7 @@ impl RangeSearch {
             let (at_ends, range) = (&values[index * places.len() + 2 * index..][..2], sums[index].range);
             let apart = largest([at_ends[0] - range.lower, at_ends[1] - range.upper]);
             // Written so that NaN is no sum.
-            apart <= SUM * range.width() + functions.rounding[outputs[index]]
+            apart <= TUNING.sum_off * range.width() + functions.rounding[outputs[index]]
         };
         let others: Vec<usize> = (0..outputs.len()).filter(|index| !is_sum(index)).collect();
         if !others.is_empty() {
@@ -225,9 +206,11 @@ impl Functions<'_> {
 
 /// Intervals of the first lattice along some axes, for polynomials or compositions of them.
 fn intervals(degrees: &[u8], axes: &[usize], are_polynomials: bool) -> Vec<usize> {
-    let index = axes.len().clamp(1, MOST_PARAMETERS) - 1;
-    let each = if are_polynomials { POLYNOMIAL[index] } else { COMPOSED[index] };
-    let along = |&axis: &usize| LEAST_INTERVALS[index].max(each * usize::from(degrees[axis])).next_multiple_of(2);
+    let index = axes.len().clamp(1, TUNING.lattice_parameters) - 1;
+    let each =
+        if are_polynomials { TUNING.intervals_of_polynomial[index] } else { TUNING.intervals_of_composed[index] };
+    let along =
+        |&axis: &usize| TUNING.least_intervals[index].max(each * usize::from(degrees[axis])).next_multiple_of(2);
     axes.iter().map(along).collect()
 }
 

@@ -7,19 +7,12 @@ use symdiff::math;
 use super::combined::Combined;
 use super::composition::Row;
 use super::range_search::block;
+use super::tuning::TUNING;
 use crate::methods::followed::Sensitivity;
 use crate::numerics::{
     Extent, ParameterBox, Range, SobolDecomposition, SparseBasis, SparseGrid, SparseWork, Surrogate, SurrogateWork,
     TensorGrid,
 };
-
-/// Degree of the polynomials whose variance is decomposed, by the number of parameters: those of the outputs, which
-/// follow from the coordinates' at any number of points. For more parameters it is the surrogate's own basis.
-const DEGREES: [u8; 3] = [24, 12, 8];
-
-/// Intervals for each degree on which widths without a parameter are found: nothing hangs on these but the order of the
-/// parameters.
-const DENSITY: usize = 4;
 
 /// Polynomials of the outputs themselves, of a degree that most of them need not have.
 struct Fine {
@@ -57,10 +50,6 @@ impl Predicted for Row<'_> {
     }
 }
 
-/// Most nodes of the polynomials of many parameters that act through few numbers, and their highest degree.
-const MOST_NODES: usize = 500;
-const MOST_DEGREE: u8 = 6;
-
 /// Outputs that follow from surrogates over lines through the box.
 struct OverLines<'a> {
     combined: &'a Combined<'a>,
@@ -89,7 +78,10 @@ impl<'a> SensitivityAnalysis<'a> {
         let k = domain.dimension();
         let nominal: Vec<f64> = domain.xi(&domain.nominal).into_iter().map(|xi| xi.clamp(-1.0, 1.0)).collect();
         // Fine polynomials hold one parameter at a time.
-        let degree = k.checked_sub(1).and_then(|index| DEGREES.get(index)).filter(|_| domain.zones.is_empty());
+        let degree = k
+            .checked_sub(1)
+            .and_then(|index| TUNING.degrees_of_variance.get(index))
+            .filter(|_| domain.zones.is_empty());
         let fine = degree.map(|&degree| Fine::new(degree, &nominal));
         let varies = (0..k).any(|axis| domain.half_width(axis) > f64::EPSILON * domain.midpoint(axis).abs());
         let causes = (0..k).map(|axis| domain.cause(axis)).collect();
@@ -156,11 +148,11 @@ impl<'a> SensitivityAnalysis<'a> {
 
 /// A sparse grid of all terms up to the highest degree that does not take too many nodes.
 fn of_total_degree(k: usize) -> SparseGrid {
-    let mut grid = SparseGrid::new(&vec![MOST_DEGREE; k]);
-    for _ in 0..MOST_DEGREE {
+    let mut grid = SparseGrid::new(&vec![TUNING.most_degree_of_combined; k]);
+    for _ in 0..TUNING.most_degree_of_combined {
         // All of the next degree.
         let next = grid.candidates();
-        if grid.len() > 1 && grid.len() + next.len() > MOST_NODES {
+        if grid.len() > 1 && grid.len() + next.len() > TUNING.most_nodes_of_combined {
             break;
         }
         next.iter().for_each(|levels| grid.add(levels));
@@ -175,7 +167,7 @@ impl Fine {
         let nodes: Vec<usize> = orders.iter().map(|order| order + 1).collect();
         let surrogate = Surrogate::tensor(&orders, &nodes);
         let decomposition = SobolDecomposition::new(surrogate.basis(), &[]);
-        let intervals = DENSITY * usize::from(degree);
+        let intervals = TUNING.density_of_widths * usize::from(degree);
         let axis: Vec<f64> = (0..=intervals).map(|l| -math::cos(PI * l as f64 / intervals as f64)).collect();
         let lattice = TensorGrid::new(vec![axis; k - 1]);
         let chebyshev = |xi: f64| {
@@ -225,7 +217,7 @@ impl Fine {
     /// The extreme beside the lattice's: along each axis a parabola through its neighbours, in the angle whose cosine ξ
     /// is, in which they are equally far. At the ends of an axis the function is even in it.
     fn peak(&self, line: &[f64], index: usize, sign: f64) -> f64 {
-        let points = DENSITY * (self.nominal[0].len() - 1) + 1;
+        let points = TUNING.density_of_widths * (self.nominal[0].len() - 1) + 1;
         let mut peak = line[index];
         let mut stride = 1;
         while stride < line.len() {

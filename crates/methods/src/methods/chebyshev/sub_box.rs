@@ -6,32 +6,15 @@ use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 use symdiff::math;
 
+use super::tuning::TUNING;
 use crate::methods::kept::KeptRow;
 use crate::methods::result::Estimate;
 use crate::methods::validation::{HeldOut, ValidationTable};
 use crate::numerics::{Course, ParameterBox, Range, SparseGrid, expected, step_validation};
 
-/// Highest degree in a parameter, by the number of parameters: one costs a node each, many their products.
-const HIGHEST: [u8; 3] = [128, 48, 24];
-const HIGHEST_OF_MANY: u8 = 16;
-
-/// Degree from which on surpluses tell how high a degree would have to be, and over how many degrees they are compared.
-const TELLING: u8 = 16;
-const COMPARED: u8 = 8;
-
-/// A box is split where the expected surplus of a higher degree than is allowed is so many times the largest allowed
-/// one.
-const SPLIT: f64 = 4.0;
-
-/// Points spread over a box that are validation samples of a new surrogate, at least.
-const LEAST_SPREAD: usize = 4;
-
-/// What a surplus may be of the error that is allowed: it is met with its safety.
-const MET: f64 = 0.5;
-
 /// Highest degree in a parameter for k of them; then a box is split.
 pub(super) fn highest(k: usize) -> u8 {
-    k.checked_sub(1).and_then(|index| HIGHEST.get(index)).copied().unwrap_or(HIGHEST_OF_MANY)
+    k.checked_sub(1).and_then(|index| TUNING.highest_degrees.get(index)).copied().unwrap_or(TUNING.highest_of_many)
 }
 
 /// A surplus for each index.
@@ -85,7 +68,7 @@ impl SubBox<'_> {
     pub fn spread_wanted(&self) -> usize {
         let degrees = self.degrees().into_iter().filter(|&degree| degree > 0);
         let wanted: usize = degrees.map(|degree| usize::from(degree) + 2).sum();
-        wanted.saturating_sub(self.spread).min(self.grid.len()).max(LEAST_SPREAD)
+        wanted.saturating_sub(self.spread).min(self.grid.len()).max(TUNING.least_spread)
     }
 
     /// Validation samples that are those of one half of the box only, which is cut across an axis, on the side of this
@@ -184,7 +167,7 @@ impl SubBox<'_> {
         let candidates = by_expectation(&self.surplus, self.grid.candidates(), true);
         let allowed = candidates.first().map_or(0.0, |(_, expected)| *expected);
         match most {
-            Some((axis, beyond)) if candidates.is_empty() || beyond > SPLIT * allowed => Some(axis),
+            Some((axis, beyond)) if candidates.is_empty() || beyond > TUNING.split * allowed => Some(axis),
             _ => (0..self.grid.dimension()).find(|&axis| self.falls_slowly(axis, highest)),
         }
     }
@@ -199,14 +182,14 @@ impl SubBox<'_> {
             self.surplus.get(&levels).copied()
         };
         let reached = (0..=highest).take_while(|&degree| at(degree).is_some()).last().unwrap_or(0);
-        if k < 2 || reached < TELLING {
+        if k < 2 || reached < TUNING.telling_degree {
             return false;
         }
         // Odd or even degrees may be missing.
         let pair = |degree: u8| at(degree).unwrap_or(0.0).max(at(degree - 1).unwrap_or(0.0));
-        let (now, before) = (pair(reached), pair(reached - COMPARED));
-        let missing = f64::from(COMPARED) * math::ln(now / MET) / math::ln(before / now);
-        now > MET && (now >= before || f64::from(reached) + missing > f64::from(highest))
+        let (now, before) = (pair(reached), pair(reached - TUNING.compared_degrees));
+        let missing = f64::from(TUNING.compared_degrees) * math::ln(now / TUNING.met) / math::ln(before / now);
+        now > TUNING.met && (now >= before || f64::from(reached) + missing > f64::from(highest))
     }
 }
 
@@ -221,7 +204,7 @@ fn by_expectation(surplus: &Surpluses, indices: Vec<Vec<u8>>, in_pairs: bool) ->
         expected
     };
     let expected = expect(1);
-    let matters = |expected: &[(Vec<u8>, f64)]| expected.first().is_some_and(|(_, expected)| *expected > MET);
+    let matters = |expected: &[(Vec<u8>, f64)]| expected.first().is_some_and(|(_, expected)| *expected > TUNING.met);
     if !in_pairs || matters(&expected) {
         return expected;
     }

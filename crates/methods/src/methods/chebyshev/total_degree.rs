@@ -1,10 +1,8 @@
 //! Orders that are given for more parameters than a full grid can have: a sparse grid, whose terms have degrees that,
 //! each as a share of its order, add up to one at most.
 
+use super::tuning::TUNING;
 use crate::numerics::{SparseGrid, Surrogate};
-
-/// Most nodes of a full grid, or of a sparse one in its place.
-const MOST_NODES: usize = 100_000;
 
 fn full(nodes: &[usize]) -> f64 {
     nodes.iter().map(|&count| count as f64).product()
@@ -12,7 +10,11 @@ fn full(nodes: &[usize]) -> f64 {
 
 /// The sparse grid, where the full one has too many nodes and this one has not.
 fn sparse(order: &[usize], nodes: &[usize]) -> Option<SparseGrid> {
-    if full(nodes) > MOST_NODES as f64 { SparseGrid::simplex(order, MOST_NODES) } else { None }
+    if full(nodes) > TUNING.most_nodes_of_full as f64 {
+        SparseGrid::simplex(order, TUNING.most_nodes_of_full)
+    } else {
+        None
+    }
 }
 
 /// Number of samples of the surrogate of a given order.

@@ -19,12 +19,7 @@ use super::{ForceElement, Forces, TypedSensor};
 use crate::grammar::quantity::Dimension;
 use crate::grammar::{JointCoordinate, Sensor, OnJoint, TimeOrder, Rotating};
 use crate::multibody::BuildError;
-
-/// Angle over which teeth come to bear, over the play.
-const BEARING: f64 = 1e-2;
-
-/// The smallest such angle, rad.
-const SHARP: f64 = 1e-7;
+use crate::elements::tuning::TUNING;
 
 /// A gear pair whose teeth have play.
 #[derive(Clone, Debug, Element)]
@@ -61,7 +56,7 @@ pub struct Backlash {
         positive,
         default_with(
             "a hundredth of `backlash`, at least 1e-7 rad",
-            Formula::number(BEARING).combined(Binary::Mul, &backlash).combined(Binary::Max, &Formula::number(SHARP))
+            Formula::number(TUNING.bearing_of_teeth).combined(Binary::Mul, &backlash).combined(Binary::Max, &Formula::number(TUNING.sharpest_bearing))
         )
     )]
     pub transition: Formula,

@@ -28,9 +28,7 @@ use crate::grammar::quantity::Dimension;
 use crate::grammar::{Checked, Fields, JointCoordinate, Sensor, OnJoint, PointRef, Reader, SymbolTable, TimeOrder, Rotating};
 use crate::syntax::codes::Code;
 use crate::multibody::BuildError;
-
-/// Stretch over which a strand becomes taut, over the first radius.
-const TAUT: f64 = 1e-4;
+use crate::elements::tuning::TUNING;
 
 /// An endless belt or chain between two pulleys, without slip.
 #[derive(Clone, Debug, Element)]
@@ -79,7 +77,7 @@ pub struct Belt {
         unit = "m",
         constant,
         positive,
-        default_with("a ten-thousandth of `first_radius`", Formula::number(TAUT).combined(Binary::Mul, &first_radius))
+        default_with("a ten-thousandth of `first_radius`", Formula::number(TUNING.taut_belt).combined(Binary::Mul, &first_radius))
     )]
     transition: Formula,
 }

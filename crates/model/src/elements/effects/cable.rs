@@ -17,9 +17,7 @@ use crate::elements::Glyph;
 use crate::grammar::quantity::Dimension;
 use crate::grammar::{Sensor, PointRef};
 use crate::multibody::BuildError;
-
-/// Stretch over which a cable becomes taut, over its length.
-const TAUT: f64 = 1e-4;
+use crate::elements::tuning::TUNING;
 
 /// A cable: it pulls, and does not push.
 #[derive(Clone, Debug, Element)]
@@ -47,7 +45,7 @@ pub struct Cable {
         unit = "m",
         constant,
         positive,
-        default_with("a ten-thousandth of `free_length`", Formula::number(TAUT).combined(Binary::Mul, &free_length))
+        default_with("a ten-thousandth of `free_length`", Formula::number(TUNING.taut_cable).combined(Binary::Mul, &free_length))
     )]
     pub transition: Formula,
 }

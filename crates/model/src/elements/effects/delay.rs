@@ -19,10 +19,7 @@ use crate::grammar::quantity::Dimension;
 use crate::grammar::values::Number;
 use crate::grammar::{Context, Element, Fields, Group, Key, Node, Reader, SymbolTable};
 use crate::multibody::BuildError;
-
-/// n where none is given, and at most.
-const USUAL_ORDER: usize = 5;
-const MOST: usize = 8;
+use crate::elements::tuning::TUNING;
 
 /// A number as it was some time ago.
 #[derive(Clone, Debug)]
@@ -96,12 +93,12 @@ impl Group for Delay {
             unit,
             required,
             default: match name {
-                "order" => Some(USUAL_ORDER.into()),
+                "order" => Some(TUNING.order_of_delay.into()),
                 _ => (!required).then(|| 0.into()),
             },
             default_in_words: None,
             schema: match name {
-                "order" => schemars::json_schema!({ "type": "integer", "minimum": 1, "maximum": MOST }),
+                "order" => schemars::json_schema!({ "type": "integer", "minimum": 1, "maximum": TUNING.most_order_of_delay }),
                 _ => generator.subschema_for::<Number>(),
             },
             requirement: None,
@@ -119,8 +116,8 @@ impl Group for Delay {
         let input = reader.required(fields, "input").and_then(|node| reader.any_unit(node, Context::Effect));
         let time = reader.required(fields, "time").and_then(|node| reader.any_unit(node, Context::Constant));
         let order = match fields.get("order") {
-            None => Some(USUAL_ORDER),
-            Some(node) => reader.count(node, 1, MOST),
+            None => Some(TUNING.order_of_delay),
+            Some(node) => reader.count(node, 1, TUNING.most_order_of_delay),
         };
         let initial = match fields.get("initial") {
             None => None,

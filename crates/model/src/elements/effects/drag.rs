@@ -14,9 +14,7 @@ use crate::grammar::quantity::Dimension;
 use crate::grammar::{Checked, Components, Fields, Sensor, PointRef, Reader, SymbolTable};
 use crate::syntax::codes::Code;
 use crate::multibody::BuildError;
-
-/// ε, m/s
-const AT_REST: f64 = 1e-6;
+use crate::elements::tuning::TUNING;
 
 /// Resistance of a fluid.
 #[derive(Clone, Debug, Element)]
@@ -79,7 +77,7 @@ impl ForceElement for Drag {
             quadratic *= forces.value(factor)?;
         }
         let u = point.velocity - wind;
-        let speed = (u.dot(u) + AT_REST * AT_REST).sqrt();
+        let speed = (u.dot(u) + TUNING.drag_at_rest * TUNING.drag_at_rest).sqrt();
         let resistance = linear + quadratic * speed;
         forces.at(&point, -resistance * u);
         forces.sensor(Sensor::FORCE, resistance * speed);

@@ -26,9 +26,7 @@ use crate::grammar::{
 };
 use crate::syntax::codes::Code;
 use crate::multibody::{BuildError, Vector};
-
-/// ε, N
-const NO_LOAD: f64 = 1e-6;
+use crate::elements::tuning::TUNING;
 
 /// Friction in a revolute, prismatic or cylindrical joint, proportional to the joint's reaction.
 #[derive(Clone, Debug, Element)]
@@ -158,7 +156,7 @@ impl JointFriction {
 
 /// √(F² + ε²).
 fn magnitude(force: Vector<'_>) -> Scalar<'_> {
-    (force.dot(force) + NO_LOAD * NO_LOAD).sqrt()
+    (force.dot(force) + TUNING.no_load_of_joint * TUNING.no_load_of_joint).sqrt()
 }
 
 impl Checked for JointFriction {

@@ -23,10 +23,7 @@ use crate::grammar::quantity::Dimension;
 use crate::grammar::{Checked, Direction, Fields, Sensor, PointRef, Reader, SymbolTable};
 use crate::syntax::codes::Code;
 use crate::multibody::{BuildError, Vector};
-
-/// Points nearer than this coincide for a damper of no free length, m. Its square is lost in rounding beside that of a
-/// length of 0.1 µm.
-const COINCIDENT: f64 = 1e-15;
+use crate::elements::tuning::TUNING;
 
 /// A spring and damper between two points.
 #[derive(Clone, Debug, Element)]
@@ -128,7 +125,7 @@ fn along_line<'g>(line: Vector<'g>, growth: Vector<'g>, spring: Coefficients<'g>
     let passes_zero = spring.free_length.is_zero();
     let mut square = line.dot(line);
     if passes_zero {
-        square += square.builder().number(COINCIDENT * COINCIDENT);
+        square += square.builder().number(TUNING.coincident_points * TUNING.coincident_points);
     }
     let length = square.sqrt();
     let elastic = spring.stiffness * (1.0 - spring.free_length / length);
@@ -136,7 +133,7 @@ fn along_line<'g>(line: Vector<'g>, growth: Vector<'g>, spring: Coefficients<'g>
     let density = elastic + spring.damping * (advance / square);
     let (mut pull, direction) = (density * line, line / length);
     if passes_zero {
-        pull += (spring.damping * (COINCIDENT * COINCIDENT / square)) * growth;
+        pull += (spring.damping * (TUNING.coincident_points * TUNING.coincident_points / square)) * growth;
     }
     Stretched { pull, direction, length, rate: advance / length, tension: density * length }
 }

@@ -26,9 +26,7 @@ use crate::grammar::{
 };
 use crate::syntax::codes::Code;
 use crate::multibody::BuildError;
-
-/// ε, N m or N
-const NO_LOAD: f64 = 1e-6;
+use crate::elements::tuning::TUNING;
 
 const SHARE: Requirement =
     Requirement { holds: |value| value > 0.0 && value <= 1.0, message: "must be above 0 and at most 1" };
@@ -84,7 +82,7 @@ impl ForceElement for ToothFriction {
             forces.sensor(LOSS, forces.graph().number(0.0));
             return Ok(());
         };
-        let load = (lambda * lambda + NO_LOAD * NO_LOAD).sqrt();
+        let load = (lambda * lambda + TUNING.no_load_of_teeth * TUNING.no_load_of_teeth).sqrt();
         let loss = match meshing {
             Meshing::Rolling(rims) => self.along_rims(forces, &rims, load)?,
             Meshing::Sliding(flanks) => self.along_thread(forces, &flanks, load)?,

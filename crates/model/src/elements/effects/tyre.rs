@@ -27,6 +27,7 @@ use crate::grammar::quantity::Dimension;
 use crate::grammar::{BodyRef, Checked, Fields, PointRef, Reader, Sensor, SymbolTable};
 use crate::syntax::codes::Code;
 use crate::multibody::{BuildError, MaterialPoint, Vector};
+use crate::elements::tuning::TUNING;
 
 /// α.
 const SLIP_ANGLE: Sensor = Sensor::of_motion("slip_angle");
@@ -37,9 +38,6 @@ const SLIP: Sensor = Sensor::of_motion("slip");
 const FORCE_ALONG: Sensor = Sensor::of_force("force_along");
 /// Further sensors of a wheel.
 const OF_WHEEL: [TypedSensor; 2] = [(SLIP, Dimension::NUMBER), (FORCE_ALONG, Dimension::FORCE)];
-
-/// Under the square root of s, so that it has a derivative at no slip.
-const NO_SLIP: f64 = 1e-12;
 
 /// A tyre that is led across its heading, or whose wheel is driven or braked.
 #[derive(Clone, Debug, Element)]
@@ -145,7 +143,7 @@ impl ForceElement for Tyre {
             return Ok(());
         };
         let [s_x, s_y] = [rolling.straight / rolling.most, side / most];
-        let slip = (s_x * s_x + s_y * s_y + NO_SLIP).sqrt();
+        let slip = (s_x * s_x + s_y * s_y + TUNING.no_slip).sqrt();
         let share = self.characteristic(forces, slip)? / slip;
         let [ahead, aside] = [share * rolling.straight, share * side];
         forces.at(&rolling.patch, ahead * heading - aside * left);

@@ -20,8 +20,8 @@ use crate::grammar::{Checked, Fields, JointCoordinate, MeshKind, OnJoint, Reader
 use crate::syntax::codes::Code;
 use crate::multibody::{BuildError, Vector};
 
-use super::teeth::ALIGNED;
 use super::{Joint, JointElement, Kinematics, Row, RowDocs, Rows};
+use crate::elements::tuning::TUNING;
 
 /// A sun and a ring, meshed by planets on a carrier; two of the three at least are named, and the third stands still.
 #[derive(Clone, Debug, Element)]
@@ -79,7 +79,7 @@ impl Planetary {
             let name = k.joint_name(on.joint);
             let [_, axis] = k.line(on, housing)?.ok_or_else(|| refuse(format!("`{name}` has no axis")))?;
             let first = *first.get_or_insert(axis);
-            if k.nominal(first.cross(axis)).iter().any(|across| across.abs() > ALIGNED) {
+            if k.nominal(first.cross(axis)).iter().any(|across| across.abs() > TUNING.aligned) {
                 return Err(refuse(format!("the axis of `{name}` is not parallel to the others")));
             }
             let [along, ..] = k.nominal([first.dot(axis); 3].into());

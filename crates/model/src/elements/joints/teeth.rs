@@ -33,6 +33,7 @@ use crate::multibody::{BuildError, Vector};
 use crate::syntax::codes::Code;
 
 use super::Kinematics;
+use crate::elements::tuning::TUNING;
 
 const BELOW_RIGHT: Requirement =
     Requirement { holds: |value| value.abs() < std::f64::consts::FRAC_PI_2, message: "must be below 90 deg" };
@@ -40,9 +41,6 @@ pub(super) const PRESSURE: Requirement = Requirement {
     holds: |value| (0.0..std::f64::consts::FRAC_PI_2).contains(&value),
     message: "must be at least 0 and below 90 deg",
 };
-
-/// Sines of angles and relative distances below this are zero.
-pub(super) const ALIGNED: f64 = 1e-9;
 
 /// How teeth touch.
 #[derive(Clone, Debug, Element)]
@@ -184,7 +182,7 @@ impl<'g, 'k> Mesh<'g, 'k> {
         let efforts = [ratio * lambda, -lambda];
         // ψ̇₂/ψ̇₁, each about its own axis.
         let ratio = first.sign * second.sign * ratio;
-        let (at, line) = if self.nominal(first.axis.cross(second.axis).norm()) < ALIGNED {
+        let (at, line) = if self.nominal(first.axis.cross(second.axis).norm()) < TUNING.aligned {
             if cone_distance.is_some() {
                 return Err(self.refused("`cone_distance` goes with axes that intersect, but they are parallel"));
             }
@@ -219,7 +217,7 @@ impl<'g, 'k> Mesh<'g, 'k> {
         if self.nominal(offset.norm()) <= 0.0 {
             return Err(self.refused("the axes coincide"));
         }
-        if self.nominal(ratio - 1.0).abs() < ALIGNED {
+        if self.nominal(ratio - 1.0).abs() < TUNING.aligned {
             return Err(self.refused("gears that turn alike have no pitch point"));
         }
         let face = self.k.number(&flanks.face)?;
@@ -232,7 +230,7 @@ impl<'g, 'k> Mesh<'g, 'k> {
         let offset = second.center - first.center;
         let normal = first.axis.cross(second.axis);
         let size = self.nominal(offset.norm()).max(self.nominal(distance).abs());
-        if self.nominal(offset.dot(normal)).abs() > ALIGNED * size {
+        if self.nominal(offset.dot(normal)).abs() > TUNING.aligned * size {
             return Err(self.refused("the axes are neither parallel nor do they intersect"));
         }
         // c₁ + u a₁ = c₂ + v a₂
@@ -240,7 +238,7 @@ impl<'g, 'k> Mesh<'g, 'k> {
         let apex = first.center + along * first.axis;
         let line = (first.axis - ratio * second.axis).unit();
         let side = self.nominal(line.dot(first.center - apex) + line.dot(second.center - apex));
-        if side.abs() <= ALIGNED * size {
+        if side.abs() <= TUNING.aligned * size {
             let why = "the bearings' points have to be on the side of the apex on which the teeth are";
             return Err(self.refused(why));
         }
@@ -256,7 +254,7 @@ impl<'g, 'k> Mesh<'g, 'k> {
         lambda: Scalar<'g>,
     ) -> Result<ToothForce<'g>, BuildError> {
         let [pinion, rack] = self.toothed;
-        if self.nominal(pinion.axis.dot(rack.axis)).abs() > ALIGNED {
+        if self.nominal(pinion.axis.dot(rack.axis)).abs() > TUNING.aligned {
             return Err(self.refused("the rack does not slide across the pinion's axis"));
         }
         let moved = pinion.sign * rack.sign * radius;

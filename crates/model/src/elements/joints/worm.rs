@@ -22,16 +22,14 @@ use crate::elements::meshing::{Flanks, Meshing};
 use crate::grammar::{JointCoordinate, MeshKind, OnJoint, Requirement, RotatingJoint};
 use crate::multibody::{BuildError, Vector};
 
-use super::teeth::{ALIGNED, Mesh, PRESSURE, ToothForce};
+use super::teeth::{Mesh, PRESSURE, ToothForce};
 use super::{Joint, JointElement, Kinematics, Row, RowDocs, Rows};
+use crate::elements::tuning::TUNING;
 
 const LEAD: Requirement = Requirement {
     holds: |value| value != 0.0 && value.abs() < std::f64::consts::FRAC_PI_2,
     message: "must be below 90 deg, and not zero",
 };
-
-/// Where none is given, degrees.
-const USUAL_PRESSURE: f64 = 20.0;
 
 /// A worm and its wheel: angle of the wheel = ±ratio * angle of the worm + offset, by the hand of the thread.
 #[derive(Clone, Debug, Element)]
@@ -90,7 +88,7 @@ impl Worm {
     fn pressure<'g>(&self, k: &dyn Kinematics<'g>) -> Result<Scalar<'g>, BuildError> {
         match &self.pressure_angle {
             Some(angle) => k.number(angle),
-            None => Ok(k.graph().number(USUAL_PRESSURE.to_radians())),
+            None => Ok(k.graph().number(TUNING.pressure_of_worm.to_radians())),
         }
     }
 
@@ -101,7 +99,7 @@ impl Worm {
     ) -> Result<PitchPoint<'g, 'k>, BuildError> {
         let mesh = Mesh::of(k, own, self.on())?;
         let [worm, wheel] = mesh.toothed;
-        if mesh.nominal(worm.axis.dot(wheel.axis)).abs() > ALIGNED {
+        if mesh.nominal(worm.axis.dot(wheel.axis)).abs() > TUNING.aligned {
             return Err(mesh.refused("the axes of worm and wheel do not cross at right angles"));
         }
         let offset = wheel.center - worm.center;

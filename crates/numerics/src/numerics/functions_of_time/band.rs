@@ -9,13 +9,8 @@ use std::f64::consts::TAU;
 use symdiff::math;
 
 use super::rate::by_values;
+use super::tuning::TUNING;
 use super::{Cell, along, begin, length};
-
-/// Frequencies that are tried in the width of a peak, one over the time.
-const TRIED: f64 = 4.0;
-
-/// Divisions of the distance of two of them around the best.
-const DIVISIONS: usize = 40;
 
 /// Share of an interval that remains by a golden section.
 const GOLDEN: f64 = 0.618_033_988_749_894_8;
@@ -39,7 +34,7 @@ pub fn worst_sine([least, most]: [f64; 2], ends: &[f64], functional: &[Cell]) ->
         real * real + imaginary * imaginary
     };
     let last = weights.last().map_or(0.0, |(time, _)| *time);
-    let count = ((most - least) * last * TRIED).ceil();
+    let count = ((most - least) * last * TUNING.tried_frequencies).ceil();
     let step = if count > 0.0 { (most - least) / count } else { 0.0 };
     let mut best = (size(least), least);
     for number in 1..=count as usize {
@@ -50,7 +45,7 @@ pub fn worst_sine([least, most]: [f64; 2], ends: &[f64], functional: &[Cell]) ->
         }
     }
     let [mut from, mut to] = [(best.1 - step).max(least), (best.1 + step).min(most)];
-    for _ in 0..DIVISIONS {
+    for _ in 0..TUNING.divisions {
         let (a, b) = (to - GOLDEN * (to - from), from + GOLDEN * (to - from));
         let [at_a, at_b] = [size(a), size(b)];
         for (own, frequency) in [(at_a, a), (at_b, b)] {

@@ -6,6 +6,7 @@
 //!   unless an end of the interval is reached; one cell may be in between (the fractional knapsack).
 //! - *Energy*, Σ aₖ² dₖ ≤ E: aₖ = λ gₖ/dₖ by Cauchy and Schwarz's inequality, cut off at 1 if |u| ≤ 1 too.
 
+use super::tuning::TUNING;
 use super::{Cell, length, sign};
 
 fn lengths(ends: &[f64]) -> Vec<f64> {
@@ -71,9 +72,6 @@ pub fn with_energy(energy: f64, bounded: bool, ends: &[f64], functional: &[Cell]
     (function, factor)
 }
 
-/// Share of a cell's part that is added where a kernel ends: a sixth of 3/8, and as much again.
-const SMEARED: f64 = 0.15;
-
 /// Cost of cells where not all of them are at their limit: λ s² d³/24 of a kernel that is straight in one with a
 /// slope s. Where the kernel ends, steps smear it over a cell, of which halved steps show five sixths. `factor` is λ.
 pub fn loss_by_energy(factor: f64, ends: &[f64], functional: &[Cell], function: &[Cell]) -> f64 {
@@ -84,7 +82,7 @@ pub fn loss_by_energy(factor: f64, ends: &[f64], functional: &[Cell], function: 
         let before = end.saturating_sub(2)..end;
         let whole = before.clone().map(density).fold(0.0, f64::max);
         let level = before.map(|cell| function[cell][0].abs()).fold(0.0, f64::max);
-        SMEARED * level * whole * lengths[end - 1]
+        TUNING.smeared * level * whole * lengths[end - 1]
     };
     let loss = |cell: usize| {
         let [before, after] = [cell - 1, cell].map(|cell| functional[cell][0] / lengths[cell]);

@@ -1,9 +1,7 @@
 //! Bounded functions, which may jump, and those that are constant over periods.
 
+use super::tuning::TUNING;
 use super::{Cell, sign};
-
-/// Ends of cells are the same up to this share of a period.
-const SAME: f64 = 1e-9;
 
 /// Levels with the signs of numbers; where one is zero, as before.
 pub fn with_signs(numbers: impl Iterator<Item = f64>) -> Vec<Cell> {
@@ -17,7 +15,7 @@ pub fn with_signs(numbers: impl Iterator<Item = f64>) -> Vec<Cell> {
 
 /// The best function that is constant over each period.
 pub fn held(period: f64, ends: &[f64], functional: &[Cell]) -> Vec<Cell> {
-    let number = |end: f64| (end / period - SAME).floor();
+    let number = |end: f64| (end / period - TUNING.same_cell).floor();
     let mut function = Vec::with_capacity(functional.len());
     let mut first = 0;
     while first < ends.len() {

@@ -19,10 +19,12 @@ mod jumps;
 mod rate;
 #[cfg(test)]
 mod tests;
+pub(crate) mod tuning;
 
 use std::sync::Arc;
 
 use self::rate::Limits;
+use tuning::TUNING;
 
 /// Functions within limits.
 #[derive(Clone, Debug, PartialEq)]
@@ -177,9 +179,6 @@ fn between(rate: f64, limits: &impl Limits, ends: &[f64], functional: &[Cell]) -
     (function, loss)
 }
 
-/// Share of a cell by which the zero of a kernel may be off, which is straight between the cells' middles.
-const OFF: f64 = 0.05;
-
 /// Cost of a switch where a cell begins, and not at the zero of the kernel, given the kernel's
 /// integrals over cells: s δ² of a straight one of slope s whose zero is δ away.
 fn at_changes(ends: &[f64], integrals: &[f64]) -> f64 {
@@ -193,7 +192,7 @@ fn at_changes(ends: &[f64], integrals: &[f64]) -> f64 {
         } else {
             f64::INFINITY
         };
-        let away = ((zero - begin(ends, cell)).abs() + OFF * longest).min(0.5 * longest);
+        let away = ((zero - begin(ends, cell)).abs() + TUNING.zero_off * longest).min(0.5 * longest);
         slope.abs() * away * away
     };
     let changes = (1..integrals.len()).filter(|&cell| integrals[cell] * integrals[cell - 1] <= 0.0);

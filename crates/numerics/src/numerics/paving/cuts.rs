@@ -2,9 +2,7 @@
 
 use super::Tubes;
 use super::parts::{PavingBox, Shape};
-
-/// Slopes below this share of the largest count as errors of the plane.
-const FLAT: f64 = 0.02;
+use super::tuning::TUNING;
 
 /// The part of a box where normal · u ≤ inner belongs to the set, that where normal · u > outer does not;
 /// u ∈ [0, 1]^k are the shares of the box's edges.
@@ -47,8 +45,8 @@ impl Cut {
     /// Shares of the box that belong to the set at least and at most.
     pub fn shares(&self) -> [f64; 2] {
         let most = self.normal.iter().fold(0.0_f64, |most, own| most.max(own.abs()));
-        let steep: Vec<f64> = self.normal.iter().copied().filter(|own| own.abs() > FLAT * most).collect();
-        let flat = self.normal.iter().filter(|own| own.abs() <= FLAT * most);
+        let steep: Vec<f64> = self.normal.iter().copied().filter(|own| own.abs() > TUNING.flat * most).collect();
+        let flat = self.normal.iter().filter(|own| own.abs() <= TUNING.flat * most);
         // What flat axes may take away from, or add to, the others.
         let (away, beyond) = flat.fold((0.0, 0.0), |sum, own| (sum.0 + own.max(0.0), sum.1 + own.min(0.0)));
         [share_below(&steep, self.inner - away), share_below(&steep, self.outer - beyond)]

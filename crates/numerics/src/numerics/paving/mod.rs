@@ -7,6 +7,7 @@
 mod cuts;
 mod least_excess;
 mod parts;
+pub(crate) mod tuning;
 
 use rayon::prelude::*;
 

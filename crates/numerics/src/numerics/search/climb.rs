@@ -1,15 +1,7 @@
 //! One climb to an extreme.
 
-use super::ExtremeSearch;
 use super::evaluations::{Evaluations, Goal};
-
-/// First distance of the probes, and that on a face: a maximum nearer to the face than half of it is not seen.
-const REACH: f64 = 0.25;
-const ON_FACE: f64 = 0.05;
-/// Least distance of probes: nearer, rounding bends parabolas.
-const NEAREST: f64 = 0.01;
-/// Shares of the way to the targets that are tried, ascending.
-const STRIDES: [f64; 3] = [0.1, 0.35, 1.0];
+use super::tuning::TUNING;
 
 /// One way up. A round probes, strides and refines: each stage sees the values that the one before it asked for.
 pub(super) struct Climb {
@@ -29,7 +21,7 @@ pub(super) struct Climb {
 
 impl Climb {
     pub(super) fn new(goal: Goal, at: usize, dimension: usize) -> Self {
-        let (reach, targets) = (vec![REACH; dimension], Vec::with_capacity(dimension));
+        let (reach, targets) = (vec![TUNING.reach; dimension], Vec::with_capacity(dimension));
         Self { goal, at, reach, last: Vec::new(), best: at, targets, promised: 0.0, arrived: false }
     }
 
@@ -60,11 +52,13 @@ impl Climb {
             let (to, gain) = match sides(*xi, *reach) {
                 [Some(a), Some(b)] => {
                     let found = target(*xi, here, (a, value()), (b, value()));
-                    *reach = (found.0 - *xi).abs().clamp(NEAREST, *reach);
+                    *reach = (found.0 - *xi).abs().clamp(TUNING.nearest, *reach);
                     found
                 }
                 [Some(inwards), None] | [None, Some(inwards)] => match value() - here {
-                    gain if gain > 0.0 => (*xi + REACH * (inwards - *xi).signum(), gain * REACH / ON_FACE),
+                    gain if gain > 0.0 => {
+                        (*xi + TUNING.reach * (inwards - *xi).signum(), gain * TUNING.reach / TUNING.on_face)
+                    }
                     _ => (*xi, 0.0),
                 },
                 [None, None] => (*xi, 0.0),
@@ -73,14 +67,14 @@ impl Climb {
             *xi = to;
         }
         self.keep_best(seen);
-        if self.targets == *x { Vec::new() } else { STRIDES.map(|share| self.towards(x, share)).to_vec() }
+        if self.targets == *x { Vec::new() } else { TUNING.strides.map(|share| self.towards(x, share)).to_vec() }
     }
 
     /// Asks for the vertex of the parabola through the best stride and its neighbours.
     pub(super) fn refine(&mut self, seen: &Evaluations) -> Vec<Vec<f64>> {
         let here = seen.value(self.goal, self.at);
-        let mut along = [(0.0, here); STRIDES.len() + 1];
-        for ((along, &place), share) in along[1..].iter_mut().zip(&self.last).zip(STRIDES) {
+        let mut along = [(0.0, here); TUNING.strides.len() + 1];
+        for ((along, &place), share) in along[1..].iter_mut().zip(&self.last).zip(TUNING.strides) {
             *along = (share, seen.value(self.goal, place));
         }
         let unmoved = self.last.is_empty();
@@ -110,7 +104,7 @@ impl Climb {
         let value = seen.value(self.goal, self.best);
         let gained = value - seen.value(self.goal, self.at);
         self.at = self.best;
-        let least = ExtremeSearch::TOLERANCE * seen.width(self.goal);
+        let least = TUNING.tolerance * seen.width(self.goal);
         let hopeless = value + self.promised.max(gained) < seen.best_value(self.goal);
         // NaN ends it too.
         let goes_on = gained > least && self.promised > least;
@@ -121,9 +115,9 @@ impl Climb {
 /// Where along an axis to probe.
 fn sides(xi: f64, reach: f64) -> [Option<f64>; 2] {
     if xi >= 1.0 {
-        [Some(1.0 - ON_FACE), None]
+        [Some(1.0 - TUNING.on_face), None]
     } else if xi <= -1.0 {
-        [None, Some(-1.0 + ON_FACE)]
+        [None, Some(-1.0 + TUNING.on_face)]
     } else {
         [Some((xi - reach).max(-1.0)), Some((xi + reach).min(1.0))]
     }

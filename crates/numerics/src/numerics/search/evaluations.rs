@@ -5,16 +5,8 @@ use std::collections::hash_map::Entry;
 use rustc_hash::FxHashMap;
 
 use super::Extremes;
+use super::tuning::TUNING;
 use crate::numerics::range::Range;
-
-/// Climbs to one extreme from different starts, without and with those of a neighbour.
-const STARTS: (usize, usize) = (24, 2);
-/// Starts are so far apart along some axis.
-const APART: f64 = 0.5;
-/// With a neighbour's extremes, other starts are tried that are within this share of the range of the best.
-const PROMISING: f64 = 0.05;
-/// Local extremes, beside the best, whose places a neighbour starts from.
-const OTHERS: usize = 4;
 
 /// The largest value of a function (sign 1), or of its negative.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -83,10 +75,10 @@ impl Evaluations {
         let mut order: Vec<usize> = (0..self.points.len()).collect();
         order.sort_by(|&a, &b| self.value(goal, b).total_cmp(&self.value(goal, a)));
         let enough = match neighbour {
-            Some(_) => self.value(goal, order[0]) - PROMISING * self.width(goal),
+            Some(_) => self.value(goal, order[0]) - TUNING.promising * self.width(goal),
             None => f64::NEG_INFINITY,
         };
-        let most = if neighbour.is_some() { STARTS.1 } else { STARTS.0 };
+        let most = if neighbour.is_some() { TUNING.starts.1 } else { TUNING.starts.0 };
         let mut starts: Vec<usize> = neighbour.into_iter().collect();
         let promising = order.into_iter().take_while(|&place| self.value(goal, place) >= enough);
         self.spread(promising, most, &mut starts);
@@ -96,8 +88,9 @@ impl Evaluations {
     /// Adds places that are apart from all before them, up to `most`.
     fn spread(&self, indices: impl Iterator<Item = usize>, most: usize, chosen: &mut Vec<usize>) {
         for index in indices {
-            let apart =
-                |&other: &usize| self.points[other].iter().zip(&self.points[index]).any(|(a, b)| (a - b).abs() > APART);
+            let apart = |&other: &usize| {
+                self.points[other].iter().zip(&self.points[index]).any(|(a, b)| (a - b).abs() > TUNING.starts_apart)
+            };
             if chosen.len() < most && chosen.iter().all(apart) {
                 chosen.push(index);
             }
@@ -123,7 +116,7 @@ impl Evaluations {
             let mut order: Vec<usize> = ends.iter().filter(|end| end.0 == goal).map(|end| end.1).collect();
             order.sort_by(|&a, &b| self.value(goal, b).total_cmp(&self.value(goal, a)));
             let mut others = vec![best];
-            self.spread(order.into_iter(), OTHERS + 1, &mut others);
+            self.spread(order.into_iter(), TUNING.others + 1, &mut others);
             others.into_iter().skip(1)
         });
         let others = others.map(|index| self.points[index].clone()).collect();

@@ -15,17 +15,14 @@ mod climb;
 mod evaluations;
 #[cfg(test)]
 mod tests;
+pub(crate) mod tuning;
 
 use rustc_hash::FxHashSet;
 
 use super::range::Range;
 use climb::{Climb, target};
 use evaluations::{Evaluations, Goal, bits};
-
-/// Points of the low-discrepancy sequence for each parameter, without and with a neighbour's extremes.
-const SCATTERED: (usize, usize) = (32, 2);
-/// Most rounds of a climb.
-const ROUNDS: usize = 12;
+use tuning::TUNING;
 
 /// A function's least and largest value found, and where.
 #[derive(Clone, Debug, PartialEq)]
@@ -56,7 +53,7 @@ impl Extremes {
 
 impl ExtremeSearch {
     /// A climb ends where a round neither promises nor brings this share of the range.
-    pub const TOLERANCE: f64 = 2e-4;
+    pub const TOLERANCE: f64 = TUNING.tolerance;
 
     /// Prepares the design.
     pub fn new(dimension: usize) -> Self {
@@ -80,7 +77,7 @@ impl ExtremeSearch {
         let known =
             neighbours.iter().flat_map(|known| [&known.lowest, &known.highest].into_iter().chain(&known.others));
         let known = known.cloned();
-        let spared = if neighbours.is_empty() { 0 } else { (SCATTERED.0 - SCATTERED.1) * self.dimension };
+        let spared = if neighbours.is_empty() { 0 } else { (TUNING.scattered.0 - TUNING.scattered.1) * self.dimension };
         let design = &self.design[..self.design.len() - spared];
         seen.look(design.iter().chain(places).cloned().chain(known).collect(), &mut evaluate)?;
         let goals = || (0..outputs).flat_map(|output| [1.0, -1.0].map(|sign| Goal { output, sign }));
@@ -102,7 +99,7 @@ impl ExtremeSearch {
                 others.map(|place| (goal, seen.indices[&bits(place)])).collect::<Vec<_>>()
             })
             .collect();
-        for _ in 0..ROUNDS {
+        for _ in 0..TUNING.rounds {
             for stage in [Climb::probe, Climb::stride, Climb::refine] {
                 let wanted: Vec<Vec<Vec<f64>>> = climbs.iter_mut().map(|climb| stage(climb, &seen)).collect();
                 let places = seen.look(wanted.iter().flatten().cloned().collect(), &mut evaluate)?;
@@ -146,7 +143,7 @@ fn design(dimension: usize) -> Vec<Vec<f64>> {
     let corners = (0..(dimension + 1).next_power_of_two()).map(walsh);
     // The root of φ^(k+1) = φ + 1: steps φ^−1, φ^−2, … that are as irrational as they can be together.
     let golden = (0..64).fold(2.0_f64, |phi, _| symdiff::math::pow(1.0 + phi, 1.0 / (dimension as f64 + 1.0)));
-    let scattered = (1..=SCATTERED.0 * dimension).map(|n| {
+    let scattered = (1..=TUNING.scattered.0 * dimension).map(|n| {
         let coordinate = |axis| 2.0 * (0.5 + n as f64 * golden.powi(-(axis as i32) - 1)).fract() - 1.0;
         (0..dimension).map(coordinate).collect()
     });

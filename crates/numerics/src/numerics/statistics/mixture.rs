@@ -3,19 +3,9 @@
 
 use super::points::replicate;
 use super::special::normal_quantile;
+use super::tuning::TUNING;
 use crate::numerics::dot;
 use symdiff::math;
-
-/// Share of the points that is drawn from the law itself: no weight is more than its reciprocal.
-const DEFENSIVE: f64 = 0.2;
-
-/// A difference quotient's step in normal scores, steps of a search, and the longest of them.
-const STEP: f64 = 1e-2;
-const ROUNDS: usize = 25;
-const STRIDE: f64 = 1.5;
-
-/// Places nearer to each other than this are one.
-const APART: f64 = 0.7;
 
 /// Places in independent normal scores about which points are drawn (T. Hesterberg, Technometrics 37 (1995) 185).
 #[derive(Clone, Debug, Default)]
@@ -26,7 +16,7 @@ pub struct Mixture {
 impl Mixture {
     /// Adds a place, unless one is near or there are so many already.
     pub fn add(&mut self, place: Vec<f64>, most: usize) {
-        let is_new = |known: &Vec<f64>| distance(known, &place) > APART;
+        let is_new = |known: &Vec<f64>| distance(known, &place) > TUNING.places_apart;
         if self.places.len() < most && self.places.iter().all(is_new) {
             self.places.push(place);
         }
@@ -52,7 +42,7 @@ impl Mixture {
 
     /// A point from evenly spread numbers: the first says about which place.
     fn drawn(&self, numbers: &[f64]) -> Vec<f64> {
-        let about = (numbers[0] - DEFENSIVE) / (1.0 - DEFENSIVE) * self.places.len() as f64;
+        let about = (numbers[0] - TUNING.defensive) / (1.0 - TUNING.defensive) * self.places.len() as f64;
         let place =
             if about >= 0.0 { self.places.get((about as usize).min(self.places.len().max(1) - 1)) } else { None };
         let score = |(axis, &p): (usize, &f64)| normal_quantile(p) + place.map_or(0.0, |place| place[axis]);
@@ -64,9 +54,9 @@ impl Mixture {
         if self.is_plain() {
             return 1.0;
         }
-        let each = (1.0 - DEFENSIVE) / self.places.len() as f64;
+        let each = (1.0 - TUNING.defensive) / self.places.len() as f64;
         let ratio = |place: &Vec<f64>| each * math::exp(dot(point, place) - 0.5 * dot(place, place));
-        1.0 / (DEFENSIVE + self.places.iter().map(ratio).sum::<f64>())
+        1.0 / (TUNING.defensive + self.places.iter().map(ratio).sum::<f64>())
     }
 }
 
@@ -74,14 +64,14 @@ impl Mixture {
 pub(super) fn value_and_slopes(at: &[f64], slack: &dyn Fn(&[Vec<f64>]) -> Vec<f64>) -> (f64, Vec<f64>) {
     let mut points = vec![at.to_vec()];
     for axis in 0..at.len() {
-        for step in [STEP, -STEP] {
+        for step in [TUNING.step_of_scores, -TUNING.step_of_scores] {
             let mut point = at.to_vec();
             point[axis] += step;
             points.push(point);
         }
     }
     let values = slack(&points);
-    let slope = |axis: usize| (values[2 * axis + 1] - values[2 * axis + 2]) / (2.0 * STEP);
+    let slope = |axis: usize| (values[2 * axis + 1] - values[2 * axis + 2]) / (2.0 * TUNING.step_of_scores);
     (values[0], (0..at.len()).map(slope).collect())
 }
 
@@ -93,8 +83,8 @@ pub fn least_at_distance(start: &[f64], radius: f64, slack: &dyn Fn(&[Vec<f64>])
         (length > 0.0 && length.is_finite()).then(|| point.iter().map(|x| radius / length * x).collect())
     };
     let mut best: Option<(f64, Vec<f64>)> = None;
-    let (mut at, mut stride) = (onto(start)?, STRIDE);
-    for _ in 0..ROUNDS {
+    let (mut at, mut stride) = (onto(start)?, TUNING.longest_step);
+    for _ in 0..TUNING.steps_to_likeliest {
         let (value, slopes) = value_and_slopes(&at, slack);
         let wanted = onto(&slopes.iter().map(|slope| -slope).collect::<Vec<_>>());
         match &best {
@@ -102,7 +92,7 @@ pub fn least_at_distance(start: &[f64], radius: f64, slack: &dyn Fn(&[Vec<f64>])
             Some((least, before)) if value >= *least => {
                 stride *= 0.5;
                 at = onto(&at.iter().zip(before).map(|(a, b)| 0.5 * (a + b)).collect::<Vec<_>>())?;
-                if stride < STEP {
+                if stride < TUNING.step_of_scores {
                     break;
                 }
                 continue;
@@ -111,7 +101,7 @@ pub fn least_at_distance(start: &[f64], radius: f64, slack: &dyn Fn(&[Vec<f64>])
         }
         let Some(wanted) = wanted else { break };
         let length = distance(&wanted, &at);
-        if length < STEP {
+        if length < TUNING.step_of_scores {
             break;
         }
         let share = (stride / length).min(1.0);

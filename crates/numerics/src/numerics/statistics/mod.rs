@@ -13,6 +13,7 @@ mod rare;
 mod rays;
 mod special;
 mod subset;
+pub(crate) mod tuning;
 
 pub use beta::beta_quantile;
 pub use copula::Copula;

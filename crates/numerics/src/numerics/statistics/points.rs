@@ -1,8 +1,10 @@
 //! Points spread evenly over the unit cube: a lattice, shifted at random a few times, so that the replicates tell how
 //! far a mean is off.
 
+use super::tuning::TUNING;
+
 /// Shifts of the lattice.
-pub const REPLICATES: usize = 16;
+pub const REPLICATES: usize = TUNING.replicates;
 
 /// A generating vector whose first 2^m points are a good lattice for every m up to 20: R. Cools, F. Y. Kuo & D. Nuyens,
 /// Constructing embedded lattice rules for multivariate integration, SIAM J. Sci. Comput. 28 (2006) 2162

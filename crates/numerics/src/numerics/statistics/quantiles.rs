@@ -4,13 +4,7 @@ use symdiff::math;
 
 use super::distribution::{Distribution, table_mass, table_quantile};
 use super::special::{normal_cdf, normal_quantile};
-
-/// Normal scores between which a law without a closed quantile is tabulated, and intervals to a score.
-const FARTHEST: i32 = 9;
-const PER_SCORE: i32 = 64;
-
-/// Half a step for slopes at the table's points.
-const STEP: f64 = 1e-4;
+use super::tuning::TUNING;
 
 /// What gives a law's values.
 #[derive(Clone, Debug)]
@@ -36,10 +30,18 @@ impl Quantiles {
             Distribution::Beta { .. } => {
                 let of = |score: f64| distribution.quantile(normal_cdf(score));
                 let point = |number: i32| {
-                    let score = f64::from(number) / f64::from(PER_SCORE);
-                    (of(score), (of(score + STEP) - of(score - STEP)) / (2.0 * STEP))
+                    let score = f64::from(number) / f64::from(TUNING.per_score);
+                    (
+                        of(score),
+                        (of(score + TUNING.step_of_table) - of(score - TUNING.step_of_table))
+                            / (2.0 * TUNING.step_of_table),
+                    )
                 };
-                By::Cubics((-FARTHEST * PER_SCORE..=FARTHEST * PER_SCORE).map(point).collect())
+                By::Cubics(
+                    (-TUNING.farthest_score * TUNING.per_score..=TUNING.farthest_score * TUNING.per_score)
+                        .map(point)
+                        .collect(),
+                )
             }
             Distribution::Table(points) => By::Mass(table_mass(points)),
             _ => By::Formula,
@@ -67,12 +69,12 @@ impl Quantiles {
                 _ => self.of_share(normal_cdf(score)),
             };
         };
-        let end = f64::from(FARTHEST);
-        let along = (score.clamp(-end, end) + end) * f64::from(PER_SCORE);
+        let end = f64::from(TUNING.farthest_score);
+        let along = (score.clamp(-end, end) + end) * f64::from(TUNING.per_score);
         let index = (along as usize).min(points.len() - 2);
         let t = along - index as f64;
         let [(from, rise), (to, fall)] = [points[index], points[index + 1]];
-        let [rise, fall] = [rise, fall].map(|slope| slope / f64::from(PER_SCORE));
+        let [rise, fall] = [rise, fall].map(|slope| slope / f64::from(TUNING.per_score));
         let change = to - from;
         from + t * (rise + t * (3.0 * change - 2.0 * rise - fall + t * (rise + fall - 2.0 * change)))
     }

@@ -7,41 +7,8 @@ use super::mixture::{Mixture, distance, value_and_slopes};
 use super::points::{REPLICATES, replicate};
 use super::rays::{Slacks, direction, shares_along, unit};
 use super::subset::{Subset, subset};
+use super::tuning::TUNING;
 use crate::numerics::dot;
-
-/// Points of a replicate.
-const POINTS: usize = 1 << 13;
-
-/// Directions of a replicate, and of those toward points that fail.
-const DIRECTIONS: usize = 1 << 8;
-const TOWARD: usize = 256;
-
-/// Most places about which samples are drawn: of the first search, and where more are needed to cover what fails.
-const PLACES: usize = 6;
-const MOST_PLACES: usize = 48;
-
-/// A sampling error of at most this share of the value is small enough.
-const CLOSE: f64 = 5e-3;
-
-/// The narrowest of several intervals is too narrow by chance: so much wider is each.
-const NARROWEST: f64 = 1.25;
-
-/// Subset simulation's chains depend on each other, and its replicates are not normal: so much wider is its interval.
-const DEPENDENT: f64 = 1.6;
-
-/// A point that fails is left out where it stands for more than so many times the share.
-const UNCOVERED: f64 = 30.0;
-
-/// Rays find where the slack changes its sign to so much of the share.
-const ALONG: f64 = 1e-3;
-
-/// Of intervals of two methods, so many times the wider one may part them.
-const APART: f64 = 2.0;
-
-/// Steps to the likeliest point that fails, the longest of them, and how far out is looked.
-const ROUNDS: usize = 25;
-const STRIDE: f64 = 1.5;
-const FARTHEST: f64 = 8.0;
 
 /// By what a share was found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -95,14 +62,14 @@ pub fn rare_share(starts: &[Vec<f64>], slacks: &Slacks) -> Option<RareShare> {
     let slack = |points: &[Vec<f64>]| counted(points).into_iter().map(|[_, own, _]| own).collect::<Vec<f64>>();
     let seen = subset(k, &slack);
     let mut mixture = Mixture::default();
-    starts.iter().filter_map(|start| likeliest(start, &slack)).for_each(|place| mixture.add(place, PLACES));
+    starts.iter().filter_map(|start| likeliest(start, &slack)).for_each(|place| mixture.add(place, TUNING.places));
     let Some(seen) = seen else {
         // Nothing to hold it against: farther out than chains come.
         let found = (!mixture.is_plain()).then(|| by_importance(&mixture, k, &counted))?;
         return Some(shared(found, RareMethod::Importance, count.get()));
     };
     let level = Estimate::of(&seen.shares);
-    let level = Estimate { sampling: DEPENDENT * level.sampling, ..level };
+    let level = Estimate { sampling: TUNING.dependent_chains * level.sampling, ..level };
     let mut best = Best(RareMethod::Directional, by_directions(k, &seen, level.value, &counted));
     if !best.is_close() && !mixture.is_plain() {
         let found = by_importance(&mixture, k, &counted);
@@ -122,7 +89,7 @@ pub fn rare_share(starts: &[Vec<f64>], slacks: &Slacks) -> Option<RareShare> {
     let Best(method, found) = best;
     let mut share = shared(found, method, count.get());
     let apart = (found[1].value - level.value).abs();
-    if apart > APART * (level.sampling + found[1].sampling) || apart.is_nan() {
+    if apart > TUNING.intervals_apart * (level.sampling + found[1].sampling) || apart.is_nan() {
         share.interval = [f64::NAN; 2];
     }
     Some(share)
@@ -138,7 +105,7 @@ struct Best(RareMethod, Estimates);
 
 impl Best {
     fn is_close(&self) -> bool {
-        self.1[1].sampling <= CLOSE * self.1[1].value
+        self.1[1].sampling <= TUNING.close * self.1[1].value
     }
 
     fn consider(&mut self, method: RareMethod, found: Estimates) {
@@ -158,12 +125,12 @@ fn estimates(of_replicate: &[[f64; 3]]) -> Estimates {
 /// By samples of a mixture of normal laws about places that fail and of the law itself.
 fn by_importance(mixture: &Mixture, k: usize, slacks: &Slacks) -> Estimates {
     let of_replicate = |number: usize| {
-        let (points, weights) = mixture.replicate(number, k, POINTS);
+        let (points, weights) = mixture.replicate(number, k, TUNING.points);
         let values = slacks(&points);
         // NaN fails.
         let share = |which: usize| {
             let fails = weights.iter().zip(&values).filter(|(_, value)| value[which] < 0.0 || value[which].is_nan());
-            fails.map(|(weight, _)| weight).sum::<f64>() / POINTS as f64
+            fails.map(|(weight, _)| weight).sum::<f64>() / TUNING.points as f64
         };
         [0, 1, 2].map(share)
     };
@@ -175,49 +142,52 @@ fn by_importance(mixture: &Mixture, k: usize, slacks: &Slacks) -> Estimates {
 /// Where none is left out, evenly spread points do better, and their replicates say how much.
 fn of_weights(mixture: &Mixture, seen: &Subset, share: f64) -> f64 {
     let weights: Vec<f64> = seen.failing.iter().map(|point| mixture.weight(point)).collect();
-    if weights.iter().all(|weight| *weight < UNCOVERED * share) {
+    if weights.iter().all(|weight| *weight < TUNING.uncovered * share) {
         return 0.0;
     }
     let mean = weights.iter().sum::<f64>() / weights.len() as f64;
-    (mean / share - 1.0).max(0.0).sqrt() / ((REPLICATES * POINTS) as f64).sqrt()
+    (mean / share - 1.0).max(0.0).sqrt() / ((REPLICATES * TUNING.points) as f64).sqrt()
 }
 
 /// Estimates with deviations that are at least those foreseen of random points.
 fn foreseen(found: Estimates, deviation: f64) -> Estimates {
-    found.map(|of| Estimate { sampling: (NARROWEST * of.sampling).max(STUDENT * deviation * of.value), ..of })
+    found.map(|of| Estimate {
+        sampling: (TUNING.narrowest_widened * of.sampling).max(STUDENT * deviation * of.value),
+        ..of
+    })
 }
 
 /// By rays from the middle.
 fn by_directions(k: usize, seen: &Subset, share: f64, slacks: &Slacks) -> Estimates {
     let of_replicate = |number: usize| {
-        let numbers = replicate(number, k, DIRECTIONS);
+        let numbers = replicate(number, k, TUNING.directions);
         let directions: Vec<Vec<f64>> = numbers.chunks_exact(k).map(direction).collect();
         let shares = shares_along(&directions, slacks);
-        [0, 1, 2].map(|which| shares.iter().map(|own| own[which]).sum::<f64>() / DIRECTIONS as f64)
+        [0, 1, 2].map(|which| shares.iter().map(|own| own[which]).sum::<f64>() / TUNING.directions as f64)
     };
     let found = estimates(&(0..REPLICATES).map(of_replicate).collect::<Vec<_>>());
-    let every = seen.failing.len().div_ceil(TOWARD);
+    let every = seen.failing.len().div_ceil(TUNING.toward_failing);
     let toward: Vec<Vec<f64>> = seen.failing.iter().step_by(every).map(|point| unit(point)).collect();
     let along = shares_along(&toward, slacks);
     let mean = along.iter().map(|own| own[1]).sum::<f64>() / along.len() as f64;
-    let found = found.map(|of| Estimate { sampling: of.sampling + ALONG * of.value, ..of });
-    foreseen(found, (mean / share - 1.0).max(0.0).sqrt() / ((REPLICATES * DIRECTIONS) as f64).sqrt())
+    let found = found.map(|of| Estimate { sampling: of.sampling + TUNING.along_ray * of.value, ..of });
+    foreseen(found, (mean / share - 1.0).max(0.0).sqrt() / ((REPLICATES * TUNING.directions) as f64).sqrt())
 }
 
 /// Adds places until none of the points that fail is left out. Returns whether one was added.
 fn cover(mixture: &mut Mixture, seen: &Subset, share: f64, slack: &dyn Fn(&[Vec<f64>]) -> Vec<f64>) -> bool {
     let before = mixture.count();
     let mut skipped = vec![false; seen.failing.len()];
-    for _ in 0..2 * MOST_PLACES {
+    for _ in 0..2 * TUNING.most_places {
         let weights = seen.failing.iter().map(|point| mixture.weight(point));
         let left = weights.enumerate().filter(|(index, _)| !skipped[*index]);
         let Some((far, weight)) = left.max_by(|a, b| a.1.total_cmp(&b.1)) else { break };
-        if weight < UNCOVERED * share || mixture.count() >= MOST_PLACES {
+        if weight < TUNING.uncovered * share || mixture.count() >= TUNING.most_places {
             break;
         }
         skipped[far] = true;
         if let Some(index) = likeliest(&seen.failing[far], slack) {
-            mixture.add(index, MOST_PLACES);
+            mixture.add(index, TUNING.most_places);
         }
     }
     mixture.count() > before
@@ -227,7 +197,7 @@ fn cover(mixture: &mut Mixture, seen: &Subset, share: f64, slack: &dyn Fn(&[Vec<
 fn likeliest(start: &[f64], slack: &dyn Fn(&[Vec<f64>]) -> Vec<f64>) -> Option<Vec<f64>> {
     let mut at = start.to_vec();
     let scale = slack(&[vec![0.0; at.len()]])[0].abs();
-    for _ in 0..ROUNDS {
+    for _ in 0..TUNING.steps_to_likeliest {
         let (value, slopes) = value_and_slopes(&at, slack);
         let squared = dot(&slopes, &slopes);
         if squared == 0.0 || !squared.is_finite() {
@@ -239,11 +209,11 @@ fn likeliest(start: &[f64], slack: &dyn Fn(&[Vec<f64>]) -> Vec<f64>) -> Option<V
         if length < 1e-3 && value.abs() < 1e-3 * scale {
             break;
         }
-        let share = (STRIDE / length).min(1.0);
+        let share = (TUNING.longest_step / length).min(1.0);
         at.iter_mut().zip(&wanted).for_each(|(at, wanted)| *at += share * (wanted - *at));
     }
     let found = slack(std::slice::from_ref(&at))[0];
-    (dot(&at, &at) < FARTHEST * FARTHEST && found <= 0.1 * scale).then_some(at)
+    (dot(&at, &at) < TUNING.farthest_likeliest * TUNING.farthest_likeliest && found <= 0.1 * scale).then_some(at)
 }
 
 #[cfg(test)]

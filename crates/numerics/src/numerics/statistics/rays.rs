@@ -4,14 +4,8 @@
 
 use super::normals::farther_than;
 use super::special::normal_quantile;
+use super::tuning::TUNING;
 use crate::numerics::dot;
-
-/// Steps along a ray in which changes of sign are looked for, and steps to each of them.
-const STEPS: usize = 20;
-const SECANTS: usize = 5;
-
-/// How far beyond the usual length of a point in so many dimensions a ray leads.
-const BEYOND: f64 = 8.0;
 
 /// Slacks that are the smaller the more of the errors is counted against them, point by point.
 pub type Slacks<'s> = dyn Fn(&[Vec<f64>]) -> Vec<[f64; 3]> + 's;
@@ -33,21 +27,21 @@ pub fn unit(point: &[f64]) -> Vec<f64> {
 /// The shares that fail along directions, for each of the slacks.
 pub fn shares_along(directions: &[Vec<f64>], slacks: &Slacks) -> Vec<[f64; 3]> {
     let Some(k) = directions.first().map(Vec::len) else { return Vec::new() };
-    let longest = (k as f64).sqrt() + BEYOND;
-    let radius = |step: usize| longest * step as f64 / STEPS as f64;
+    let longest = (k as f64).sqrt() + TUNING.beyond_usual;
+    let radius = |step: usize| longest * step as f64 / TUNING.steps_of_ray as f64;
     let at = |direction: &[f64], r: f64| -> Vec<f64> { direction.iter().map(|x| r * x).collect() };
     let grid: Vec<Vec<f64>> = directions
         .iter()
-        .flat_map(|direction| (0..=STEPS).map(move |step| (direction, step)))
+        .flat_map(|direction| (0..=TUNING.steps_of_ray).map(move |step| (direction, step)))
         .map(|(direction, step)| at(direction, radius(step)))
         .collect();
     let values = slacks(&grid);
     let mut shares = vec![[0.0; 3]; directions.len()];
     let mut crossings: Vec<Crossing> = Vec::new();
-    for (number, along) in values.chunks_exact(STEPS + 1).enumerate() {
+    for (number, along) in values.chunks_exact(TUNING.steps_of_ray + 1).enumerate() {
         for which in 0..3 {
             let fails = |step: usize| along[step][which] < 0.0 || along[step][which].is_nan();
-            for step in 0..STEPS {
+            for step in 0..TUNING.steps_of_ray {
                 let ends = [step, step + 1].map(|step| (radius(step), along[step][which]));
                 match (fails(step), fails(step + 1)) {
                     (true, true) => shares[number][which] += farther_than(ends[0].0, k) - farther_than(ends[1].0, k),
@@ -56,13 +50,13 @@ pub fn shares_along(directions: &[Vec<f64>], slacks: &Slacks) -> Vec<[f64; 3]> {
                 }
             }
             // Beyond the last step all is as it is there.
-            if fails(STEPS) {
+            if fails(TUNING.steps_of_ray) {
                 shares[number][which] += farther_than(longest, k);
             }
         }
     }
     let mut brackets: Vec<[(f64, f64); 2]> = crossings.iter().map(|crossing| crossing.2).collect();
-    for round in 0..SECANTS {
+    for round in 0..TUNING.secants {
         let middles: Vec<f64> = brackets
             .iter()
             .map(|[(a, low), (b, high)]| {

@@ -3,17 +3,7 @@
 
 use super::normals::Normals;
 use super::points::REPLICATES;
-
-/// Samples of a replicate in each level, and how many of them begin the next one.
-const SAMPLES: usize = 500;
-const SEEDS: usize = 50;
-
-/// Levels at most: less than 1e-16 fails then.
-const LEVELS: usize = 17;
-
-/// The acceptance of a chain that moves best, and the share of new numbers in its first steps.
-const ACCEPTED: f64 = 0.44;
-const FIRST_SHARE: f64 = 0.6;
+use super::tuning::TUNING;
 
 /// What subset simulation says.
 #[derive(Clone, Debug)]
@@ -39,24 +29,27 @@ pub fn subset(k: usize, slack: &dyn Fn(&[Vec<f64>]) -> Vec<f64>) -> Option<Subse
 
 fn replicate(number: usize, k: usize, slack: &dyn Fn(&[Vec<f64>]) -> Vec<f64>) -> (f64, Vec<Vec<f64>>) {
     let mut normals = Normals::new(number);
-    let mut points: Vec<Vec<f64>> = (0..SAMPLES).map(|_| normals.draw(k)).collect();
+    let mut points: Vec<Vec<f64>> = (0..TUNING.samples_of_level).map(|_| normals.draw(k)).collect();
     let mut values = known(slack(&points));
     let (mut share, mut level) = (1.0, f64::INFINITY);
-    for _ in 0..LEVELS {
-        let mut order: Vec<usize> = (0..SAMPLES).collect();
+    for _ in 0..TUNING.levels {
+        let mut order: Vec<usize> = (0..TUNING.samples_of_level).collect();
         order.sort_by(|&a, &b| values[a].total_cmp(&values[b]).then(a.cmp(&b)));
-        let next = values[order[SEEDS - 1]];
+        let next = values[order[TUNING.seeds_of_level - 1]];
         if next < 0.0 {
             let failing: Vec<usize> = order.into_iter().take_while(|&index| values[index] < 0.0).collect();
-            share *= failing.len() as f64 / SAMPLES as f64;
+            share *= failing.len() as f64 / TUNING.samples_of_level as f64;
             return (share, failing.into_iter().map(|index| std::mem::take(&mut points[index])).collect());
         }
         if next >= level {
             break;
         }
         level = next;
-        share *= SEEDS as f64 / SAMPLES as f64;
-        let seeds = order[..SEEDS].iter().map(|&index| (std::mem::take(&mut points[index]), values[index])).collect();
+        share *= TUNING.seeds_of_level as f64 / TUNING.samples_of_level as f64;
+        let seeds = order[..TUNING.seeds_of_level]
+            .iter()
+            .map(|&index| (std::mem::take(&mut points[index]), values[index]))
+            .collect();
         (points, values) = chains(seeds, level, &mut normals, slack);
     }
     (0.0, Vec::new())
@@ -71,8 +64,8 @@ fn chains(
 ) -> (Vec<Vec<f64>>, Vec<f64>) {
     let (mut at, mut of): (Vec<Vec<f64>>, Vec<f64>) = seeds.into_iter().unzip();
     let (mut points, mut values) = (at.clone(), of.clone());
-    let mut share = FIRST_SHARE;
-    for step in 1..SAMPLES / SEEDS {
+    let mut share = TUNING.first_share;
+    for step in 1..TUNING.samples_of_level / TUNING.seeds_of_level {
         let kept = (1.0 - share * share).sqrt();
         let moved = |point: &Vec<f64>| -> Vec<f64> {
             point.iter().zip(normals.draw(point.len())).map(|(old, new)| kept * old + share * new).collect()
@@ -86,7 +79,7 @@ fn chains(
                 accepted += 1;
             }
         }
-        let apart = accepted as f64 / SEEDS as f64 - ACCEPTED;
+        let apart = accepted as f64 / TUNING.seeds_of_level as f64 - TUNING.accepted;
         share = (share * symdiff::math::exp(apart / (step as f64).sqrt())).clamp(0.05, 1.0);
         points.extend_from_slice(&at);
         values.extend_from_slice(&of);

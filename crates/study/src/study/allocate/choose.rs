@@ -1,25 +1,10 @@
 //! The cheapest multiples of tolerances that leave something of every margin.
 
 use super::items::{Choice, Item};
+use super::tuning::TUNING;
 use super::worst::Slack;
 use crate::numerics::{Linear, Power, cheapest};
 use symdiff::math;
-
-/// Rounds of linearisation, what a round may change at most, and when it has settled: of worst cases, and of samples,
-/// which tell less.
-const ROUNDS: [usize; 2] = [40, 12];
-const CHANGE: f64 = 2.0;
-const SETTLED: [f64; 2] = [1e-6, 3e-3];
-
-/// Steps towards the largest factor that is good, and what may be left then.
-const SECANTS: usize = 40;
-const CLOSE: f64 = 1e-7;
-
-/// The remaining margin may be negative by rounding.
-const ROUNDING: f64 = 1e-9;
-
-/// Combinations of grades that are tried.
-const MOST: usize = 4000;
 
 /// The choice.
 #[derive(Clone, Debug, PartialEq)]
@@ -42,14 +27,14 @@ pub fn choose(slack: &mut dyn Slack, items: &[Item], start: &[f64]) -> Option<Ch
     if items.iter().any(|item| matches!(item.choice, Choice::Grades(_))) {
         let mut search = Grades { slack, items, start, best: None, tried: 0 };
         search.descend(&mut tightest.clone(), 0, 0.0);
-        let is_exhaustive = search.tried < MOST;
+        let is_exhaustive = search.tried < TUNING.combinations;
         return search.best.map(|(_, multiples)| Chosen { multiples, is_exhaustive });
     }
     Some(Chosen { multiples: continuous(slack, items, &tightest, start), is_exhaustive: true })
 }
 
 fn is_good(slack: &mut dyn Slack, multiples: &[f64]) -> bool {
-    slack.least(multiples) >= -ROUNDING
+    slack.least(multiples) >= -TUNING.rounding
 }
 
 /// One factor for all that may change.
@@ -70,19 +55,19 @@ fn together(slack: &mut dyn Slack, items: &[Item], tightest: &[f64]) -> Vec<f64>
 /// Jarratt, BIT 11 (1971) 168), which keeps the root between two factors.
 fn largest(slack: &mut dyn Slack, least: f64, most: f64, with: &dyn Fn(f64) -> Vec<f64>) -> f64 {
     let mut high = (most, slack.least(&with(most)));
-    if high.1 >= -ROUNDING {
+    if high.1 >= -TUNING.rounding {
         return most;
     }
     let mut low = (least, slack.least(&with(least)));
     let (mut weights, mut side) = ([low.1.max(0.0), high.1], 0);
-    for _ in 0..SECANTS {
-        if low.1 < CLOSE || high.0 - low.0 < CLOSE * high.0 || slack.is_interrupted() {
+    for _ in 0..TUNING.secants {
+        if low.1 < TUNING.close || high.0 - low.0 < TUNING.close * high.0 || slack.is_interrupted() {
             break;
         }
         let middle = (low.0 * weights[1] - high.0 * weights[0]) / (weights[1] - weights[0]);
         let middle = if middle > low.0 && middle < high.0 { middle } else { 0.5 * (low.0 + high.0) };
         let found = (middle, slack.least(&with(middle)));
-        if found.1 >= -ROUNDING {
+        if found.1 >= -TUNING.rounding {
             if side == 1 {
                 weights[1] *= 0.5;
             }
@@ -152,7 +137,7 @@ fn settled(
 ) -> Vec<f64> {
     let costs: Vec<f64> = priced.iter().filter_map(|&i| items[i].cost(1.0)).collect();
     let which = usize::from(slack.power() == Power::Second);
-    let (rounds, settled) = (ROUNDS[which], SETTLED[which]);
+    let (rounds, settled) = (TUNING.rounds_of_choice[which], TUNING.settled_choice[which]);
     let pick = |all: &[f64]| -> Vec<f64> { priced.iter().map(|&i| all[i]).collect() };
     for round in 0..rounds {
         if slack.power() == Power::First {
@@ -160,7 +145,7 @@ fn settled(
         }
         let mut constraints = slack.linearised(&multiples);
         constraints.iter_mut().for_each(|constraint| constraint.slopes = pick(&constraint.slopes));
-        let change = math::pow(CHANGE, 1.0 / (1.0 + round as f64 / 8.0));
+        let change = math::pow(TUNING.first_change, 1.0 / (1.0 + round as f64 / 8.0));
         let ends = |to: f64| priced.iter().map(move |&i| (i, to));
         let least: Vec<f64> = ends(1.0 / change).map(|(i, change)| (multiples[i] * change).max(tightest[i])).collect();
         let most: Vec<f64> = ends(change).map(|(i, change)| (multiples[i] * change).min(items[i].widest)).collect();
@@ -191,7 +176,7 @@ fn is_flat(slack: &mut dyn Slack, multiples: &[f64], tightest: &[f64]) -> bool {
     let with_tightest = |constraint: &Linear| {
         constraint.value + constraint.slopes.iter().zip(&moves).map(|(slope, moved)| slope * moved).sum::<f64>()
     };
-    slack.linearised(multiples).iter().any(|constraint| with_tightest(constraint) < -ROUNDING)
+    slack.linearised(multiples).iter().any(|constraint| with_tightest(constraint) < -TUNING.rounding)
 }
 
 /// A search through grades, depth first, the cheapest of each first.
@@ -209,7 +194,7 @@ impl Grades<'_> {
     fn descend(&mut self, multiples: &mut Vec<f64>, index: usize, cost: f64) {
         let least: f64 = self.items[index..].iter().map(|item| item.cost(item.widest).unwrap_or(0.0)).sum();
         if self.best.as_ref().is_some_and(|best| cost + least >= best.0)
-            || self.tried >= MOST
+            || self.tried >= TUNING.combinations
             || self.slack.is_interrupted()
         {
             return;

@@ -1,13 +1,8 @@
 //! The tolerances of a model, and what may become of each.
 
+use super::tuning::TUNING;
 use crate::model::{Cost, Description, Grade, Law, ParameterValue};
 use crate::numerics::statistics::Distribution;
-
-/// No tolerance becomes tighter than this share of the model's.
-const TIGHTEST: f64 = 0.01;
-
-/// Digits of a tolerance that was found.
-const DIGITS: i32 = 4;
 
 /// What may become of a tolerance, in multiples of the model's.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,7 +35,7 @@ impl Item {
     pub fn tightest(&self) -> f64 {
         match &self.choice {
             Choice::Fixed => 1.0,
-            Choice::Together | Choice::Reciprocal(_) => TIGHTEST.min(self.widest),
+            Choice::Together | Choice::Reciprocal(_) => TUNING.tightest.min(self.widest),
             Choice::Grades(grades) => grades.iter().map(|grade| grade.0).fold(f64::INFINITY, f64::min),
         }
     }
@@ -71,7 +66,7 @@ impl Item {
         }
         let whole = self.above.max(self.below);
         let tolerance = whole * multiple;
-        let digit = 10_f64.powi(symdiff::math::log10(tolerance).floor() as i32 + 1 - DIGITS);
+        let digit = 10_f64.powi(symdiff::math::log10(tolerance).floor() as i32 + 1 - TUNING.digits);
         // A number of few digits is unchanged, but for rounding.
         ((tolerance / digit * (1.0 + 1e-12)).floor() * digit / whole).min(multiple)
     }

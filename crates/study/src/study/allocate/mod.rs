@@ -9,6 +9,7 @@ mod choose;
 mod items;
 mod share;
 mod surface;
+pub(crate) mod tuning;
 mod wide;
 mod worst;
 
@@ -23,23 +24,10 @@ use items::with_tolerances;
 pub(in crate::study) use items::{Choice, Item, items};
 use share::Share;
 use surface::Surface;
+use tuning::TUNING;
 use wide::{Wide, largest_error, of, surrogate};
 pub(in crate::study) use wide::{raise, run_simulations};
 use worst::{Slack, Worst};
-
-/// Studies that confirm, at most, and the share of a nominal margin they may leave before another round looks for more.
-const ROUNDS: usize = 4;
-const UNUSED: f64 = 5e-3;
-
-/// The same of a yield, as a share of all tolerances, for which more rounds are worth it.
-const ROUNDS_OF_SHARE: usize = 6;
-const UNUSED_OF_SHARE: f64 = 5e-4;
-
-/// Of what may fail, the share that is aimed at: what samples tell of it differs a little from study to study.
-const AIM: f64 = 0.997;
-
-/// Shares of the nominal margins for which the cost is reported.
-const TRADED: usize = 6;
 
 /// How to allocate.
 #[derive(Clone, Copy, Debug)]
@@ -109,8 +97,12 @@ impl Allocator<'_> {
         let mut allocation = self.begun();
         let mut best: Option<(f64, Chosen, Summary)> = None;
         let mut chosen = None;
-        let mut may_fail = self.asked.share.map(|share| AIM * (1.0 - share));
-        let (rounds, enough) = if may_fail.is_some() { (ROUNDS_OF_SHARE, UNUSED_OF_SHARE) } else { (ROUNDS, UNUSED) };
+        let mut may_fail = self.asked.share.map(|share| TUNING.aim * (1.0 - share));
+        let (rounds, enough) = if may_fail.is_some() {
+            (TUNING.rounds_of_share, TUNING.unused_of_share)
+        } else {
+            (TUNING.confirming_rounds, TUNING.unused)
+        };
         let mut start = present.clone();
         for _ in 0..rounds {
             (self.options.stage)("choosing tolerances");
@@ -196,7 +188,7 @@ impl Allocator<'_> {
         };
         let Some(share) = self.asked.share else { return Ok(Box::new(Worst::new(surface, self.options.interrupted))) };
         let laws = statistics::laws(self.model).map_err(AllocateError::Unsuitable)?;
-        Ok(Box::new(Share::new(surface, laws, self.options.interrupted, AIM * (1.0 - share))))
+        Ok(Box::new(Share::new(surface, laws, self.options.interrupted, TUNING.aim * (1.0 - share))))
     }
 
     /// A study at these multiples.
@@ -234,7 +226,7 @@ impl Allocator<'_> {
             let Some(found) = yields else { return (false, 0.0) };
             let fails = 1.0 - found.interval[0];
             let unused = (1.0 - share - fails) / (1.0 - share);
-            *may_fail *= (AIM * (1.0 - share) / fails.max(1e-3 * (1.0 - share))).clamp(0.2, 5.0);
+            *may_fail *= (TUNING.aim * (1.0 - share) / fails.max(1e-3 * (1.0 - share))).clamp(0.2, 5.0);
             // Of few that fail, a tenth is hardly a change of a tolerance: d ln Φ(−z) is about −z² d ln z.
             let z = normal_quantile(share);
             return (unused >= 0.0, unused / (z * z).max(1.0));
@@ -330,9 +322,9 @@ impl Allocator<'_> {
         let now = slack.least(&present);
         allocation.trade_before = priced.then(|| point(now, self.cost(&present)));
         allocation.trade_after = Some(point(slack.least(found), self.cost(found)));
-        let step = 0.8 / TRADED as f64;
+        let step = 0.8 / TUNING.traded as f64;
         let mut start = found.to_vec();
-        for number in 0..=TRADED {
+        for number in 0..=TUNING.traded {
             if (self.options.interrupted)() {
                 break;
             }

@@ -1,30 +1,13 @@
 //! Yields: what the worst of most samples leaves, and how that changes with the tolerances.
 
 use super::surface::Surface;
-use super::worst::{STEP, Slack};
+use super::tuning::TUNING;
+use super::worst::Slack;
 use crate::numerics::statistics::{
     Mixture, REPLICATES, least_at_distance, normal_quantile, shares_below, weighted_quantile,
 };
 use crate::numerics::{Linear, Power};
-use crate::study::statistics::Laws;
-
-/// Points of each replicate. The confirming study finds the rest.
-const POINTS: usize = 1 << 9;
-
-/// Where less than this may fail, points are drawn about the places that fail first: so many of them, looked for from
-/// so many samples of each requirement.
-const RARE: f64 = 0.1;
-const PLACES: usize = 6;
-const STARTS: usize = 12;
-
-/// Points are drawn again where a multiple is another by this factor.
-const OTHER: f64 = 1.2;
-
-/// Samples from which the derivatives of the quantile are taken: with what lies below them within these ends, in shares
-/// that may fail, and at least so many. What the tolerances take of them is shared as at the quantile itself where
-/// margins are linear and laws normal.
-const BESIDE: [f64; 2] = [0.4, 2.5];
-const LEAST: usize = 64;
+use crate::study::statistics::{self, Laws};
 
 /// What a share of samples leaves of all requirements.
 pub struct Share<'s> {
@@ -60,7 +43,7 @@ impl<'s> Share<'s> {
 
     /// Samples for these multiples, drawn again where those before were for others.
     fn draw(&mut self, multiples: &[f64]) -> &Drawn {
-        let is_other = |(a, b): (&f64, &f64)| a / b > OTHER || b / a > OTHER;
+        let is_other = |(a, b): (&f64, &f64)| a / b > TUNING.redrawn || b / a > TUNING.redrawn;
         let drawn = match self.drawn.take() {
             Some(drawn) if !drawn.multiples.iter().zip(multiples).any(is_other) => drawn,
             _ => self.drawn_for(multiples),
@@ -70,10 +53,10 @@ impl<'s> Share<'s> {
 
     fn drawn_for(&self, multiples: &[f64]) -> Drawn {
         let k = self.laws.dimension();
-        let mixture = if self.may_fail < RARE { self.mixture(multiples) } else { Mixture::default() };
+        let mixture = if self.may_fail < TUNING.rare { self.mixture(multiples) } else { Mixture::default() };
         let (mut samples, mut weights) = (Vec::new(), Vec::new());
         for number in 0..REPLICATES {
-            let (points, own) = mixture.replicate(number, k, POINTS);
+            let (points, own) = mixture.replicate(number, k, TUNING.points);
             samples.extend(points.iter().map(|scores| self.laws.of_scores(scores)));
             weights.extend(own);
         }
@@ -89,20 +72,22 @@ impl<'s> Share<'s> {
                 points.iter().map(|scores| self.scaled(multiples, &self.laws.of_scores(scores))).collect();
             self.surface.slacks(&samples)
         };
-        let (points, _) = Mixture::default().replicate(0, self.laws.dimension(), POINTS);
+        let (points, _) = Mixture::default().replicate(0, self.laws.dimension(), TUNING.points);
         let all = slacks(&points);
         let mut places: Vec<(f64, Vec<f64>)> = Vec::new();
         for (requirement, own) in all.chunks_exact(points.len()).enumerate() {
             let slack = |points: &[Vec<f64>]| slacks(points)[requirement * points.len()..][..points.len()].to_vec();
             let mut order: Vec<usize> = (0..points.len()).collect();
             order.sort_by(|&a, &b| own[a].total_cmp(&own[b]).then(a.cmp(&b)));
-            let found =
-                order.iter().take(STARTS).filter_map(|&start| least_at_distance(&points[start], distance, &slack));
+            let found = order
+                .iter()
+                .take(statistics::tuning::TUNING.starts_of_places)
+                .filter_map(|&start| least_at_distance(&points[start], distance, &slack));
             places.extend(found.map(|index| (slack(std::slice::from_ref(&index))[0], index)));
         }
         places.sort_by(|a, b| a.0.total_cmp(&b.0));
         let mut mixture = Mixture::default();
-        places.into_iter().for_each(|(_, index)| mixture.add(index, PLACES));
+        places.into_iter().for_each(|(_, index)| mixture.add(index, TUNING.places));
         mixture
     }
 
@@ -125,8 +110,9 @@ impl<'s> Share<'s> {
     fn beside(&self, values: &[f64], weights: &[f64]) -> Vec<usize> {
         let shares = shares_below(values, weights);
         let index = |times: f64| shares.partition_point(|(_, below)| *below < times * self.may_fail);
-        let (from, to) = (index(BESIDE[0]), index(BESIDE[1]));
-        let (from, to) = if to < from + LEAST { (0, LEAST.min(shares.len())) } else { (from, to) };
+        let (from, to) = (index(TUNING.beside_quantile[0]), index(TUNING.beside_quantile[1]));
+        let (from, to) =
+            if to < from + TUNING.fewest_beside { (0, TUNING.fewest_beside.min(shares.len())) } else { (from, to) };
         shares[from..to].iter().map(|(number, _)| *number).collect()
     }
 
@@ -138,14 +124,14 @@ impl<'s> Share<'s> {
         let slope = |axis: usize| {
             let mean = |sign: f64| {
                 let mut moved = multiples.to_vec();
-                moved[axis] *= 1.0 + sign * STEP;
+                moved[axis] *= 1.0 + sign * TUNING.step_of_difference;
                 let samples: Vec<Vec<f64>> =
                     which.iter().map(|&index| self.scaled(&moved, &drawn.samples[index])).collect();
                 let slacks = self.surface.slacks(&samples);
                 let own = |(index, &number): (usize, &usize)| drawn.weights[number] * pick(&slacks, index);
                 which.iter().enumerate().map(own).sum::<f64>() / weight
             };
-            (mean(1.0) - mean(-1.0)) / (2.0 * STEP * multiples[axis])
+            (mean(1.0) - mean(-1.0)) / (2.0 * TUNING.step_of_difference * multiples[axis])
         };
         (0..multiples.len()).map(slope).collect()
     }

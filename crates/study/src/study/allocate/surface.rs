@@ -4,9 +4,7 @@ use crate::methods::MOST_ON_GRIDS;
 use crate::study::reduced::Margins;
 
 use super::items::Item;
-
-/// A margin that is unknown is taken for one that is this far from being fulfilled: an event that does not occur fails.
-const UNKNOWN: f64 = -10.0;
+use super::tuning::TUNING;
 
 /// Margins as functions of the parameters.
 pub struct Surface<'k> {
@@ -66,7 +64,7 @@ impl<'k> Surface<'k> {
         for (requirement, own) in slacks.chunks_exact_mut(samples.len().max(1)).enumerate() {
             let (reserve, scale) = (self.reserves[requirement], self.scale(requirement));
             for slack in own {
-                *slack = if slack.is_nan() { UNKNOWN } else { (*slack - reserve) / scale };
+                *slack = if slack.is_nan() { TUNING.unknown_margin } else { (*slack - reserve) / scale };
             }
         }
         slacks

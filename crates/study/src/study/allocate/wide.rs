@@ -2,19 +2,12 @@
 
 use super::items::{Item, items, with_tolerances};
 use super::surface::Surface;
+use super::tuning::TUNING;
 use super::{AllocateError, AllocateOptions};
 use crate::methods::{Chebyshev, Degree, Method};
 use crate::model::Description;
 use crate::results::Summary;
 use crate::study::{Kept, Options, RunError, statistics, subsystems};
-
-/// Where the surrogate over the widest box is not known, the box is made smaller so many times.
-const NARROWER: usize = 4;
-
-/// The surrogate's order is raised while its margins are off by more than this share of the nominal ones, so many
-/// times.
-const ROUGH: f64 = 0.02;
-const ORDERS: usize = 3;
 
 /// A surrogate over the widest box.
 pub struct Wide {
@@ -35,25 +28,27 @@ pub fn surrogate(model: &Description, asked: AllocateOptions, options: &Options)
         let multiples: Vec<f64> = items.iter().map(reach).collect();
         let mut wide = with_tolerances(model, &items, &multiples);
         (options.stage)("the surrogate over the widest tolerances");
-        for order in 0..=ORDERS {
+        for order in 0..=TUNING.raised_orders {
             let only = Options { methods: Some(vec![Method::Chebyshev]), ..of(options) };
             let ran = subsystems::run(&wide, &only, true);
             let failure = match ran {
                 Ok((_, summary, kept)) => {
                     simulations += run_simulations(&summary);
                     match kept.filter(|kept| is_known(&items, kept)) {
-                        Some(kept) if order == ORDERS || !is_rough(&items, &kept) || !raise(&mut wide) => {
+                        Some(kept)
+                            if order == TUNING.raised_orders || !is_rough(&items, &kept) || !raise(&mut wide) =>
+                        {
                             return Ok(Wide { kept, items, simulations });
                         }
                         Some(_) => continue,
-                        None if raise(&mut wide) && order < ORDERS => continue,
+                        None if raise(&mut wide) && order < TUNING.raised_orders => continue,
                         None => None,
                     }
                 }
                 Err(error @ (RunError::Infeasible(_) | RunError::Simulation(_))) => Some(error),
                 Err(error) => return Err(error.into()),
             };
-            if narrower == NARROWER {
+            if narrower == TUNING.narrower_boxes {
                 let unknown = "there is no reliable surrogate of the margins: bound the model with `mbint run` first";
                 return Err(failure.map_or_else(|| AllocateError::Unsuitable(unknown.to_owned()), AllocateError::Run));
             }
@@ -84,7 +79,7 @@ fn is_known(items: &[Item], kept: &Kept) -> bool {
 fn is_rough(items: &[Item], kept: &Kept) -> bool {
     let Some(margins) = kept.margins() else { return true };
     let surface = Surface::new(margins, items);
-    (0..surface.count).any(|index| surface.surrogate_error(index) > ROUGH * surface.scale(index))
+    (0..surface.count).any(|index| surface.surrogate_error(index) > TUNING.rough * surface.scale(index))
 }
 
 /// The largest error of a margin, as a share of the nominal one.

@@ -1,6 +1,7 @@
 //! Worst cases: the least margin over a box, and how it changes with the box.
 
 use super::surface::Surface;
+use super::tuning::TUNING;
 use crate::numerics::{ExtremeSearch, Extremes, Linear, Power};
 
 /// What requirements leave of tolerances.
@@ -44,12 +45,6 @@ pub trait Slack {
     }
 }
 
-/// A difference quotient's step, as a share of a multiple.
-pub const STEP: f64 = 1e-3;
-
-/// Places nearer than this are one.
-const ALIKE: f64 = 0.05;
-
 /// The worst case of every requirement.
 pub struct Worst<'s> {
     pub surface: Surface<'s>,
@@ -73,13 +68,14 @@ impl<'s> Worst<'s> {
         for axis in 0..multiples.len() {
             for sign in [1.0, -1.0] {
                 let mut moved = multiples.to_vec();
-                moved[axis] *= 1.0 + sign * STEP;
+                moved[axis] *= 1.0 + sign * TUNING.step_of_difference;
                 samples.push(self.surface.sample(&moved, xi));
             }
         }
         let slacks = self.surface.slacks(&samples);
         let own = &slacks[requirement * samples.len()..][..samples.len()];
-        let slope = |axis: usize| (own[2 * axis + 1] - own[2 * axis + 2]) / (2.0 * STEP * multiples[axis]);
+        let slope =
+            |axis: usize| (own[2 * axis + 1] - own[2 * axis + 2]) / (2.0 * TUNING.step_of_difference * multiples[axis]);
         (own[0], (0..multiples.len()).map(slope).collect())
     }
 }
@@ -100,7 +96,8 @@ impl Slack for Worst<'_> {
         let places: Vec<Vec<f64>> = self.known.iter().flatten().cloned().collect();
         let Ok(found) = self.search.extremes(count, &self.before, &places, evaluate);
         for (known, found) in self.known.iter_mut().zip(&found) {
-            let is_near = |other: &Vec<f64>| other.iter().zip(&found.lowest).all(|(a, b)| (a - b).abs() < ALIKE);
+            let is_near =
+                |other: &Vec<f64>| other.iter().zip(&found.lowest).all(|(a, b)| (a - b).abs() < TUNING.same_place);
             if !known.iter().any(is_near) {
                 known.push(found.lowest.clone());
             }

@@ -12,6 +12,7 @@ use crate::study::problem::Study;
 use crate::study::stepping::{StepPlan, events_followed, events_of_parts};
 use symdiff::math;
 
+use super::tuning::TUNING;
 use crate::assemble::ConstraintId;
 use crate::methods::{Stop, StopCause};
 use crate::model::Stepping;
@@ -28,12 +29,6 @@ use crate::syntax::{Code, Coded};
 /// Said of results that the user did not wait for.
 const INTERRUPTED: &str =
     "interrupted: methods that were done are kept, of the one that was not what it had found of every sample";
-
-/// A mode is reported that moves an output by more than this share of its range.
-const WORTH_TELLING: f64 = 1e-3;
-
-/// A step resolves a mode that turns by this angle, rad, in it.
-const RESOLVING: f64 = 0.1;
 
 /// Why a run ended early, or what of it is left out, for people.
 pub struct Note {
@@ -173,8 +168,8 @@ fn damped_mode(results: &Results, bounds: &Bounds) -> Option<DampedMode> {
         (0..bounds.outputs.len()).map(share).filter(|share| share.is_finite()).fold(0.0, f64::max)
     };
     let worst = results.bounded.doubts.damped.iter().max_by(|a, b| moved(a).total_cmp(&moved(b)))?;
-    (moved(worst) > WORTH_TELLING).then(|| {
-        let step = RESOLVING / worst.frequency;
+    (moved(worst) > TUNING.worth_telling).then(|| {
+        let step = TUNING.resolving_angle / worst.frequency;
         let digit = 10.0_f64.powi(math::log10(step).floor() as i32);
         DampedMode { frequency: worst.frequency / std::f64::consts::TAU, step: (step / digit).floor() * digit }
     })

@@ -1,16 +1,11 @@
 //! Results of a search over functions of the time: how much further they move outputs than constants do, and the worst.
 
+use super::tuning::TUNING;
 use crate::numerics::Cell;
 use crate::results::{Bounds, ExcitationSummary, FunctionWitness, OutputBounds, WitnessFunction};
 use crate::study::bounding::{Bounded, FunctionEnds, WorstFunction, as_constants};
 use crate::study::excited::Limits;
 use crate::study::problem::Study;
-
-/// How long a jump takes, as a share of the duration.
-const JUMP: f64 = 1e-9;
-
-/// Points that lie this close to a straight line are on it, as a share of how far the function ranges.
-const STRAIGHT: f64 = 1e-9;
 
 /// How far each output is moved; of those of which that is known.
 pub fn excitations(study: &Study, bounded: &Bounded, bounds: &Bounds) -> Vec<ExcitationSummary> {
@@ -86,15 +81,15 @@ fn of_excitations(study: &Study, functions: &FunctionEnds, worst: &WorstFunction
         let mut points: Vec<(f64, f64)> = Vec::new();
         let mut begin = 0.0;
         for (cell, &to) in cells.iter().zip(&*worst.ends) {
-            if begin >= end * (1.0 - JUMP) && begin > 0.0 {
+            if begin >= end * (1.0 - TUNING.jump_time) && begin > 0.0 {
                 break;
             }
             let [from, until] = [begin, to].map(|time| limits.value_at(excitation, *cell, time));
-            let jumps = points.last().is_some_and(|(_, value)| (value - from).abs() > STRAIGHT * from.abs());
+            let jumps = points.last().is_some_and(|(_, value)| (value - from).abs() > TUNING.straight * from.abs());
             if points.is_empty() {
                 points.push((0.0, from));
             } else if jumps {
-                points.push((begin + JUMP * duration, from));
+                points.push((begin + TUNING.jump_time * duration, from));
             }
             points.push((to, until));
             begin = to;
@@ -112,7 +107,7 @@ fn without_those_between(points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
         let is_between = match (kept.last(), points.get(index + 1)) {
             (Some(&(before, from)), Some(&(after, to))) => {
                 let on_line = from + (to - from) * (time - before) / (after - before);
-                (on_line - value).abs() <= STRAIGHT * reach
+                (on_line - value).abs() <= TUNING.straight * reach
             }
             _ => false,
         };

@@ -11,13 +11,11 @@ use crate::study::reduced::{KeptReduced, Margins, MarginsOfPart, ReducedValues};
 
 use rayon::prelude::*;
 
+use super::tuning::TUNING;
 use crate::methods::{self, KeptSurrogate};
 use crate::numerics::{BandError, SparseBasis};
 use crate::reduce::Subsystem;
 use crate::simulate::{SimulationError, Simulator};
-
-/// Samples evaluated by one thread at once. Fixed, so that results do not depend on the number of threads.
-const CHUNK: usize = 1024;
 
 /// A subsystem's surrogate.
 #[derive(Clone, Debug)]
@@ -180,11 +178,13 @@ impl Evaluator<'_> {
     /// output by output, sample by sample; NaN where a closure has no solution. In parallel, with the same bits for any
     /// number of threads.
     pub fn values<P: AsRef<[f64]> + Sync>(&self, row: usize, outputs: &[usize], samples: &[P]) -> Vec<f64> {
-        let chunks: Vec<Vec<f64>> =
-            samples.par_chunks(CHUNK).map(|samples| self.values_of_chunk(row, outputs, samples)).collect();
+        let chunks: Vec<Vec<f64>> = samples
+            .par_chunks(TUNING.samples_at_once)
+            .map(|samples| self.values_of_chunk(row, outputs, samples))
+            .collect();
         let mut values = Vec::with_capacity(outputs.len() * samples.len());
         for index in 0..outputs.len() {
-            for (chunk, samples) in chunks.iter().zip(samples.chunks(CHUNK)) {
+            for (chunk, samples) in chunks.iter().zip(samples.chunks(TUNING.samples_at_once)) {
                 values.extend_from_slice(&chunk[index * samples.len()..][..samples.len()]);
             }
         }

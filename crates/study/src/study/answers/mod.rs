@@ -10,6 +10,7 @@ mod functions;
 mod keeping;
 mod kept;
 mod results;
+pub(crate) mod tuning;
 
 pub use analysis::arrange;
 pub use assemblies::of as assemblies;

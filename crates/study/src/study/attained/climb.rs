@@ -5,19 +5,8 @@
 //! Optimization, algorithm 7.4); as long as there is none, it goes to the corner that the gradient's signs name.
 
 use super::model::{Bend, Curvature};
+use super::tuning::TUNING;
 use crate::numerics::dot;
-
-/// A step that promises less than this share of the output's range in the row is left out.
-const WORTH: f64 = 1e-3;
-
-/// The same as a share of the error that is allowed.
-const WORTH_OF_ALLOWED: f64 = 0.1;
-
-/// Pairs of points whose curvature counts.
-const MEMORY: usize = 8;
-
-/// Cosine of the angle between a move and the change of the gradient below which it tells no curvature.
-const FLAT: f64 = 1e-6;
 
 /// An output's end in a row.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -61,7 +50,7 @@ pub(super) struct Climb {
 impl Climb {
     /// To an end of an output that ranges over so much in the row, by about; its error is `allowed`.
     pub fn new(end: End, start: Vec<f64>, width: f64, allowed: f64) -> Self {
-        let worth = (WORTH * width).min(WORTH_OF_ALLOWED * allowed);
+        let worth = (TUNING.worth_of_step * width).min(TUNING.worth_of_allowed * allowed);
         Self { end, start, best: None, curvatures: Vec::new(), failures: 0, worth, is_done: false }
     }
 
@@ -145,7 +134,7 @@ impl Climb {
         let less = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a - b).collect();
         let between = Curvature { moved: less(&found.point, &best.point), fall: less(&best.slope, &found.slope) };
         self.curvatures.push(between);
-        if self.curvatures.len() > MEMORY {
+        if self.curvatures.len() > TUNING.memory_of_curvature {
             self.curvatures.remove(0);
         }
         if found.value > best.value {
@@ -157,7 +146,7 @@ impl Climb {
 
 /// Whether the gradient falls along a move.
 fn is_falling(moved: &[f64], fall: &[f64]) -> bool {
-    dot(moved, fall) > FLAT * (dot(moved, moved) * dot(fall, fall)).sqrt()
+    dot(moved, fall) > TUNING.no_curvature * (dot(moved, moved) * dot(fall, fall)).sqrt()
 }
 
 /// What a gradient promises on the way to a target.

@@ -2,12 +2,10 @@
 
 use super::climb::Climb;
 use super::surface::Surfaces;
+use super::tuning::TUNING;
 use super::{AttainedSearch, FollowedRow, best, by_end};
 use crate::methods::{Followed, Sensitivity};
 use crate::numerics::Range;
-
-/// Least error of an end, as a share of the one that is allowed: some climbs prove nothing.
-const LEAST_ERROR: f64 = 0.2;
 
 /// What climbs left open at an end, or at both ends of an output in a row.
 #[derive(Clone, Copy, Default)]
@@ -40,7 +38,7 @@ pub(super) fn ends(
         for output in 0..outputs {
             let Open { promise, gap } = open[row * outputs + output];
             let beside = before.iter().chain(&after).map(|row| open[row * outputs + output].gap);
-            let least = LEAST_ERROR * search.allowed[output];
+            let least = TUNING.least_error * search.allowed[output];
             let error = (promise + beside.fold(gap, f64::max)).max(least);
             let range = search.attained.range(row, output).unwrap_or(Range::UNKNOWN);
             known.push(Followed { range, error, sensitivity: None });

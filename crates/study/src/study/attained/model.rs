@@ -2,10 +2,8 @@
 //! box. Along directions in which no point was tried the model is linear, so that it goes on along a ridge where steps
 //! of limited-memory BFGS, whose curvature there is the one across the ridge, come to rest.
 
+use super::tuning::TUNING;
 use crate::numerics::dot;
-
-/// Share of a matrix's size below which a product with it is rounding.
-const ROUNDING: f64 = 1e-12;
 
 /// From one point to another: the move, and by how much the gradient falls.
 pub(super) struct Curvature {
@@ -25,7 +23,7 @@ impl Bend {
             let curvature = dot(moved, fall);
             let known = bend.times(moved);
             let before = dot(moved, &known);
-            if before > ROUNDING * curvature {
+            if before > TUNING.rounding_of_product * curvature {
                 bend.0.push((-1.0 / before, known));
             }
             bend.0.push((1.0 / curvature, fall.clone()));
@@ -48,14 +46,13 @@ impl Bend {
     pub fn largest(&self, point: &[f64], slope: &[f64]) -> Vec<f64> {
         let k = point.len();
         let (mut at, mut left) = (point.to_vec(), slope.to_vec());
-        let pushes = |x: f64, left: f64| left * x > 0.0 && x.abs() >= 1.0 - ROUNDING;
+        let pushes = |x: f64, left: f64| left * x > 0.0 && x.abs() >= 1.0 - TUNING.rounding_of_product;
         let mut way: Option<(Vec<f64>, f64)> = None;
-        // On each face at most as many steps as B has ranks, and few faces.
-        for _ in 0..4 * k {
+        for _ in 0..TUNING.rounds_of_face * k {
             let free: Vec<f64> =
                 at.iter().zip(&left).map(|(&x, &own)| if pushes(x, own) { 0.0 } else { own }).collect();
             let size = dot(&free, &free);
-            if size <= ROUNDING * dot(slope, slope) {
+            if size <= TUNING.rounding_of_product * dot(slope, slope) {
                 break;
             }
             let direction: Vec<f64> = match &way {
@@ -66,7 +63,7 @@ impl Bend {
             };
             let bent = self.times(&direction);
             let curvature = dot(&direction, &bent);
-            let share = if curvature > ROUNDING * size { size / curvature } else { f64::INFINITY };
+            let share = if curvature > TUNING.rounding_of_product * size { size / curvature } else { f64::INFINITY };
             let reach = at.iter().zip(&direction).filter(|(_, by)| **by != 0.0);
             let reach = reach.map(|(x, by)| (by.signum() - x) / by).fold(f64::INFINITY, f64::min).max(0.0);
             let step = share.min(reach);

@@ -6,6 +6,7 @@
 mod nominal;
 mod repeated;
 pub(super) mod source;
+pub(crate) mod tuning;
 
 pub(super) use nominal::ask_nominal;
 pub(super) use repeated::repeat;

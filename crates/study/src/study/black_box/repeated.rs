@@ -1,16 +1,11 @@
 //! Points that are asked twice: what differs is noise of the program.
 
+use super::tuning::TUNING;
 use crate::methods::Validation;
 use crate::numerics::Sample;
 use crate::results::{BlackBoxSummary, NoiseSummary};
 use crate::simulate::SimulationError;
 use crate::study::problem::Study;
-
-/// Validation samples that are asked twice, at most, besides the nominal one.
-const VALIDATION: usize = 4;
-
-/// Differences below this share of the largest value are rounding.
-const ROUNDING: f64 = 1e-12;
 
 /// Asks the program a second time, and notes how much its answers differ; nothing where there is none.
 ///
@@ -20,7 +15,7 @@ pub(in crate::study) fn repeat(study: &Study, validation: Option<&Validation>) -
     let Some(source) = &study.source else { return Ok(()) };
     let mut samples: Vec<Sample> = vec![study.domain.nominal.clone()];
     if let Some(validation) = validation {
-        let points = &validation.points[..validation.points.len().min(VALIDATION)];
+        let points = &validation.points[..validation.points.len().min(TUNING.asked_twice)];
         samples.extend(study.domain.samples(points));
     }
     samples.dedup();
@@ -39,7 +34,7 @@ pub(in crate::study) fn repeat(study: &Study, validation: Option<&Validation>) -
             largest = largest.max((a - b).abs());
             size = size.max(a.abs());
         }
-        if largest > ROUNDING * size { largest } else { 0.0 }
+        if largest > TUNING.rounding * size { largest } else { 0.0 }
     };
     let named = study.description.outputs.iter().enumerate();
     let noisy = named.map(|(output, own)| (own, noise(output))).filter(|(_, noise)| *noise > 0.0);

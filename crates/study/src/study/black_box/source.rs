@@ -7,18 +7,13 @@ use symdiff::{Formula, math};
 
 use mbint_fmu::{Interface, STEP};
 
+use super::tuning::TUNING;
 use crate::assemble::NumberFormulas;
 use crate::black_box::{Answer, Pool, Questions, Unanswered};
 use crate::model::{BlackBox, BoxOutput, Description, Parameter, ParameterValue, Refine};
 use crate::numerics::Sample;
 use crate::results::BlackBoxSummary;
 use crate::simulate::{Interruption, Schedule, SimulationError};
-
-/// Values that are kept of points that were asked, at most: a validation sample is asked under several schedules.
-const MOST_KEPT: usize = 1 << 22;
-
-/// Steps of model exchange between two rows, where the model does not say their length.
-const STEPS_A_ROW: f64 = 10.0;
 
 /// The time among the names that a formula of answers may use.
 const TIME: &str = "t";
@@ -54,7 +49,7 @@ impl UnitSteps {
     fn of(own: &BlackBox, output_step: f64) -> Option<Self> {
         let own = own.fmu()?;
         let are_own = own.task.interface == Interface::ModelExchange;
-        let length = own.step.or(are_own.then_some(output_step / STEPS_A_ROW))?;
+        let length = own.step.or(are_own.then_some(output_step / TUNING.steps_a_row))?;
         Some(Self { length, are_own })
     }
 }
@@ -154,7 +149,7 @@ impl Source {
         for (index, answer) in open.into_iter().zip(answers) {
             let answer = answer.map(|rows| self.outputs_of(&rows, &samples[index]));
             if let Ok(values) = &answer
-                && known.values + values.len() <= MOST_KEPT
+                && known.values + values.len() <= TUNING.most_kept
             {
                 known.values += values.len();
                 known.answers.insert(bits(&points[index]), values.clone());

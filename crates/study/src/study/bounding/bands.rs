@@ -1,14 +1,12 @@
 //! Bands of an output, with their errors, and what says that they are wrong: values that the run has simulated, and one
 //! another.
 
+use super::tuning::TUNING;
 use super::{Bounded, Outcome};
 use crate::methods::Method;
 use crate::numerics::{BandError, EMPTY, Range, carries, largest, step_error, time_error, time_error_certified};
 use crate::results::Band;
 use crate::study::problem::Study;
-
-/// Estimates of the time steps' error by which the nominal simulation may be outside of a proven motion.
-const OF_STEPS: f64 = 3.0;
 
 /// An output's band by every method, with its error. All that was simulated lies within.
 pub fn bands(study: &Study, bounded: &Bounded, output: usize, rows: usize) -> Vec<Band> {
@@ -63,7 +61,7 @@ pub fn bands(study: &Study, bounded: &Bounded, output: usize, rows: usize) -> Ve
         let explained = |row: usize, nominal: Range| {
             let (direct, halved) = (validation.direct.at(row, output), validation.halved.at(row, output));
             outcome.result.steps[output][row] == 0.0
-                && constant[row].misses(nominal) <= OF_STEPS * step_error(&direct, &halved)
+                && constant[row].misses(nominal) <= TUNING.outside_of_proof * step_error(&direct, &halved)
         };
         let held: Vec<Range> = match is_sampled {
             true => simulated.clone(),

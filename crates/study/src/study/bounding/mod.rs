@@ -8,6 +8,7 @@ mod bands;
 mod contributions;
 mod ends;
 mod functions;
+pub(crate) mod tuning;
 
 use super::ensemble::Motions;
 use super::internal::{InternalError, caught};

@@ -3,11 +3,9 @@
 //! Each output has its scale: the widest that its known band gets, or, without a band, how far its course reaches. What
 //! deviates is divided by it.
 
+use super::tuning::TUNING;
 use crate::results::Deviation;
 use crate::results::OutputBounds;
-
-/// An output that moves (or whose band gets wider) by no more than this share of its size has no scale to measure by.
-const AT_REST: f64 = 1e-9;
 
 /// Bands (one an output, or none) and nominal courses, with the outputs' scales.
 pub(super) struct Known {
@@ -37,7 +35,7 @@ fn scale(output: &OutputBounds) -> f64 {
     let (low, high) =
         output.nominal.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &x| (low.min(x), high.max(x)));
     let scale = if output.bands.is_empty() { high - low } else { widths.fold(0.0, f64::max) };
-    if scale > AT_REST * low.abs().max(high.abs()) { scale } else { f64::NAN }
+    if scale > TUNING.at_rest * low.abs().max(high.abs()) { scale } else { f64::NAN }
 }
 
 impl Known {

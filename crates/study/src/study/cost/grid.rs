@@ -1,20 +1,12 @@
 //! The settings that a study tries: methods, orders, points and steps.
 
+use super::tuning::TUNING;
 use crate::methods::{BoundsRequest, Curve, Method};
 use crate::model::{Description, SchemeChoice, Simulation, Stepping};
 use crate::results::{CostMethod, Integrator};
 
-/// Steps, in parts of the model's own.
-const PARTS: [f64; 6] = [0.125, 0.25, 0.5, 1.0, 2.0, 4.0];
-
-/// Tolerances of the explicit method.
-const TOLERANCES: [f64; 4] = [1e-2, 1e-4, 1e-6, 1e-8];
-
 /// Levels of extrapolation that samples of bounds are tried with.
 pub(super) const LEVELS: Integrator = Integrator::Extrapolated { levels: 3 };
-
-/// Orders of bounds whose samples are integrated in place of plain steps: more accurate samples are worth higher ones.
-const COUNTS: [usize; 4] = [5, 8, 12, 16];
 
 /// Of which all samples lie in the true range: what a reference is checked by.
 pub(super) const SCAN: CostMethod = CostMethod::Bounds(Curve { method: Method::Scan, index: 0 });
@@ -52,7 +44,7 @@ pub(super) fn finer(simulation: &Simulation, parts: f64) -> Stepping {
 
 /// From coarse to fine, none twice.
 pub(super) fn steppings(simulation: &Simulation) -> Vec<Stepping> {
-    let mut steppings: Vec<Stepping> = PARTS.iter().map(|&parts| finer(simulation, parts)).collect();
+    let mut steppings: Vec<Stepping> = TUNING.parts_of_step.iter().map(|&parts| finer(simulation, parts)).collect();
     steppings.dedup();
     steppings
 }
@@ -61,7 +53,7 @@ pub(super) fn steppings(simulation: &Simulation) -> Vec<Stepping> {
 pub(super) fn steppings_by(integrator: Integrator, simulation: &Simulation) -> Vec<Stepping> {
     match integrator {
         Integrator::Extrapolated { .. } => steppings(simulation),
-        Integrator::Explicit => TOLERANCES.map(Stepping::Tolerance).to_vec(),
+        Integrator::Explicit => TUNING.tolerances.map(Stepping::Tolerance).to_vec(),
     }
 }
 
@@ -76,7 +68,7 @@ pub(super) fn settings(simulation: &Simulation, composable: bool) -> Vec<Setting
     }
     for integrator in [LEVELS, Integrator::Explicit] {
         let method = smoothest(composable).by(integrator);
-        for count in COUNTS {
+        for count in TUNING.orders_of_accurate_samples {
             let steppings = steppings_by(integrator, simulation).into_iter();
             settings.extend(steppings.map(|stepping| Setting { method, count, stepping }));
         }

@@ -3,6 +3,7 @@
 use super::deviation::Known;
 use super::grid::{LEVELS, Setting, steppings, steppings_by};
 use super::timing::{best_of, method, timed};
+use super::tuning::TUNING;
 use super::{CostError, CostOptions};
 use crate::assemble::System;
 use crate::compile::Scheme;
@@ -15,9 +16,6 @@ use crate::study::{RunError, first_step, scheme as model_scheme};
 /// What integrates in place of plain steps.
 const INTEGRATORS: [Integrator; 4] =
     [Integrator::Extrapolated { levels: 2 }, LEVELS, Integrator::Extrapolated { levels: 4 }, Integrator::Explicit];
-
-/// Spectral radii that generalised-α is tried with.
-const RADII: [f64; 3] = [0.5, 0.8, 0.9];
 
 /// Every scheme's settings, from coarse to fine; those that were done before an interruption.
 ///
@@ -32,7 +30,7 @@ pub(super) fn trajectories(
 ) -> Result<Vec<CostPoint>, CostError> {
     let interrupted = options.interrupted;
     let mut schemes = vec![model_scheme(model), Scheme::TrapezoidalIndex2];
-    schemes.extend(RADII.map(|spectral_radius| Scheme::GeneralisedAlpha { spectral_radius }));
+    schemes.extend(TUNING.spectral_radii.map(|spectral_radius| Scheme::GeneralisedAlpha { spectral_radius }));
     let steppings = steppings(&model.simulation);
     let others: Vec<(Integrator, Stepping)> = INTEGRATORS
         .into_iter()

@@ -10,6 +10,7 @@ mod integrators;
 mod plan;
 mod reference;
 mod timing;
+pub(crate) mod tuning;
 
 use super::RunError;
 use crate::compile::compile_switches;
@@ -23,6 +24,7 @@ use grid::{Setting, settings, smoothest, uncertain};
 use plan::ReferencePlan;
 use reference::Reference;
 use timing::{method, timed};
+use tuning::TUNING;
 
 /// How to study.
 #[derive(Clone, Copy)]
@@ -64,14 +66,6 @@ pub enum CostError {
     },
 }
 
-/// Shares of the progress bar: the reference is done, the bounds are done.
-const REFERENCE_DONE: f64 = 0.3;
-const BOUNDS_DONE: f64 = 0.95;
-
-/// Share of the budget that is kept for the schemes on the nominal trajectory, and most of it, s.
-const FOR_SCHEMES: f64 = 0.2;
-const MOST_FOR_SCHEMES: f64 = 5.0;
-
 /// Studies a model: every setting of the grid that the budget allows, cheap ones first.
 ///
 /// # Errors
@@ -85,7 +79,7 @@ pub fn cost(model: &Description, options: &CostOptions) -> Result<CostStudy, Cos
     let is_over = |budget: f64| move || (options.interrupted)() || begun.elapsed().as_secs_f64() > budget;
     let over = is_over(options.budget);
     let within = CostOptions { interrupted: &over, ..*options };
-    let progress = |done| (options.progress)(REFERENCE_DONE * done);
+    let progress = |done| (options.progress)(TUNING.reference_done * done);
     let is_fixed = matches!(model.simulation.stepping, Stepping::Fixed(_));
     let has_expansion = is_fixed && compile_switches(&system).is_none() && !system.analysis.is_without_steps();
     let planned = ReferencePlan::within_budget(model, composable, has_expansion, &within)
@@ -102,7 +96,7 @@ pub fn cost(model: &Description, options: &CostOptions) -> Result<CostStudy, Cos
         Err(error) => return Err(error),
     };
     let reference_seconds = begun.elapsed().as_secs_f64();
-    let for_bounds = options.budget - (FOR_SCHEMES * options.budget).min(MOST_FOR_SCHEMES);
+    let for_bounds = options.budget - (TUNING.for_schemes * options.budget).min(TUNING.most_for_schemes);
 
     let at_rest = reference.known.at_rest().map(|output| format!("`{output}`: it has nothing to measure errors by"));
     let mut left_out: Vec<String> = at_rest.collect();
@@ -123,7 +117,7 @@ pub fn cost(model: &Description, options: &CostOptions) -> Result<CostStudy, Cos
         let skipped = skipped.into_iter().filter(|_| !(options.interrupted)());
         left_out.extend(skipped.map(|(method, count)| beyond_budget(method, count, options)));
     }
-    let progress = |done: f64| (options.progress)(BOUNDS_DONE + (1.0 - BOUNDS_DONE) * done);
+    let progress = |done: f64| (options.progress)(TUNING.bounds_done + (1.0 - TUNING.bounds_done) * done);
     let over = is_over(options.budget);
     let within = CostOptions { interrupted: &over, ..*options };
     let mut trajectories = integrators::trajectories(model, &system, &reference.known, &progress, &within)?;
@@ -212,7 +206,7 @@ fn run_settings(
         let work = setting.work(k);
         let progress = |fraction: f64| {
             let share = (done + fraction * work) / total;
-            (options.progress)(REFERENCE_DONE + (BOUNDS_DONE - REFERENCE_DONE) * share);
+            (options.progress)(TUNING.reference_done + (TUNING.bounds_done - TUNING.reference_done) * share);
         };
         let rate = entry(&mut rates, setting.method, rate);
         let this = Instant::now();

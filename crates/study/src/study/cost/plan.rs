@@ -2,40 +2,11 @@
 
 use super::grid::{LEVELS, SCAN, Setting, finer, smoothest, uncertain};
 use super::timing::spent;
+use super::tuning::TUNING;
 use super::{CostError, CostOptions};
 use crate::model::Description;
 use crate::results::CostMethod;
 use crate::study::scheme;
-
-/// Highest orders for one, two and three parameters; for more, the highest up to [`FEW`] that this many simulations
-/// allow.
-const ORDERS: [usize; 3] = [32, 24, 10];
-const FEW: usize = 7;
-
-/// The order is not lowered below this for the time's sake, nor the steps made coarser.
-const LEAST_ORDER: usize = 2;
-
-/// Simulations of one run of the reference.
-const MOST_SIMULATIONS: f64 = 1e4;
-
-/// How much finer the reference's finest steps may be than the model's.
-const FINEST: [f64; 5] = [16.0, 8.0, 4.0, 2.0, 1.0];
-
-/// Points of the dense scan, a parameter, for one, two and three: odd, so that every second of them makes a scan too.
-const DENSE: [[usize; 3]; 3] = [[401, 201, 101], [61, 41, 21], [21, 13, 9]];
-
-/// Points of a scan that tells what many samples take.
-const SCAN_TRIAL: [usize; 3] = [64, 8, 4];
-
-/// The coarsest reference may take this share; with more, nothing would be left to compare with it.
-const MOST: f64 = 0.7;
-
-/// What orders add is only measured where a short run takes less than this share.
-const TRIAL: f64 = 0.05;
-
-/// Shares of the budget that the reference's surrogate and its scan may take.
-const SHARE: f64 = 0.35;
-const SCAN_SHARE: f64 = 0.25;
 
 /// Runs for the reference: with three step sizes, each twice the one before.
 pub(super) struct ReferencePlan {
@@ -69,7 +40,7 @@ impl ReferencePlan {
             return Ok(Self {
                 method: of_steps(CostMethod::Scheme(scheme(model))),
                 order: 0,
-                parts: FINEST[0],
+                parts: TUNING.finer_references[0],
                 scan: None,
                 rate: 0.0,
             });
@@ -77,10 +48,11 @@ impl ReferencePlan {
         let method = of_steps(smoothest(composable));
         let setting = |count, parts| Setting { method, count, stepping: finer(simulation, parts) };
         let simulations = |order| setting(order, 1.0).simulations(k);
-        let highest = ORDERS.get(k - 1).copied();
-        let highest = highest
-            .unwrap_or_else(|| (2..=FEW).rev().find(|&order| simulations(order) <= MOST_SIMULATIONS).unwrap_or(2));
-        if simulations(highest) > MOST_SIMULATIONS {
+        let highest = TUNING.highest_orders.get(k - 1).copied();
+        let highest = highest.unwrap_or_else(|| {
+            (2..=TUNING.order_of_many).rev().find(|&order| simulations(order) <= TUNING.most_simulations).unwrap_or(2)
+        });
+        if simulations(highest) > TUNING.most_simulations {
             return Err(CostError::TooMany { parameters: k, simulations: simulations(highest) });
         }
 
@@ -92,7 +64,7 @@ impl ReferencePlan {
         let rate = if rate.is_finite() { rate } else { 0.0 };
         let constant = (fine.seconds - rate * fine.work).max(0.0);
         // What a range takes to be found grows with the samples of its polynomial, whatever the steps.
-        let growth = if fine.seconds > TRIAL * options.budget || highest < 4 {
+        let growth = if fine.seconds > TUNING.share_of_trial * options.budget || highest < 4 {
             0.0
         } else {
             let middle = setting(highest / 2, 0.5);
@@ -105,18 +77,18 @@ impl ReferencePlan {
         let run =
             |order, parts| constant(order) + rate * (parts * fine.beside + of_method * setting(order, parts).work(k));
         let seconds = |order, parts: f64| {
-            let lower = if order > LEAST_ORDER { order - 2 } else { 1 };
+            let lower = if order > TUNING.least_order { order - 2 } else { 1 };
             [parts, parts / 2.0, parts / 4.0].map(|parts| run(order, parts)).iter().sum::<f64>()
                 + run(lower, parts / 4.0)
         };
-        let least = LEAST_ORDER.min(highest);
+        let least = TUNING.least_order.min(highest);
         let orders = (least..=highest).rev().step_by(2);
         let (order, parts) = orders
-            .flat_map(|order| FINEST.map(|parts| (order, parts)))
-            .find(|&(order, parts)| seconds(order, parts) <= SHARE * options.budget)
-            .unwrap_or((least, FINEST[FINEST.len() - 1]));
+            .flat_map(|order| TUNING.finer_references.map(|parts| (order, parts)))
+            .find(|&(order, parts)| seconds(order, parts) <= TUNING.share_of_reference * options.budget)
+            .unwrap_or((least, TUNING.finer_references[TUNING.finer_references.len() - 1]));
         let least_seconds = seconds(order, parts);
-        if (options.interrupted)() || least_seconds > MOST * options.budget {
+        if (options.interrupted)() || least_seconds > TUNING.most_of_coarsest * options.budget {
             return Err(CostError::TooCostly { seconds: least_seconds });
         }
         let rate = fine.seconds / trials[1].work(k);
@@ -139,7 +111,9 @@ fn dense_scan(
     options: &CostOptions,
 ) -> Result<Option<usize>, CostError> {
     let k = uncertain(model);
-    let (Some(&few), Some(dense)) = (SCAN_TRIAL.get(k - 1), DENSE.get(k - 1)) else { return Ok(None) };
+    let (Some(&few), Some(dense)) = (TUNING.trial_scans.get(k - 1), TUNING.dense_scans.get(k - 1)) else {
+        return Ok(None);
+    };
     let scan = |count, parts| Setting { method, count, stepping: finer(&model.simulation, parts) };
     let trial = scan(few, 1.0);
     let rate = spent(model, &trial, options)?.seconds / trial.work(k);
@@ -147,5 +121,5 @@ fn dense_scan(
         let runs = [(points, parts), (points, parts / 2.0), (points / 2 + 1, parts), (points / 2 + 1, parts / 2.0)];
         runs.map(|(points, parts)| rate * scan(points, parts).work(k)).iter().sum::<f64>()
     };
-    Ok(dense.iter().copied().find(|&points| seconds(points) <= SCAN_SHARE * options.budget))
+    Ok(dense.iter().copied().find(|&points| seconds(points) <= TUNING.share_of_scan * options.budget))
 }

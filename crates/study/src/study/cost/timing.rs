@@ -2,18 +2,13 @@
 
 use super::CostOptions;
 use super::grid::Setting;
+use super::tuning::TUNING;
 use crate::methods::Method;
 use crate::model::Description;
 use crate::numerics::clock::Instant;
 use crate::results::Bounds;
 use crate::results::{MethodSummary, Summary};
 use crate::study::{Options, RunError, run};
-
-/// Runs are repeated until they have taken so many seconds together …
-const LONG_ENOUGH: f64 = 0.15;
-
-/// … or there were so many of them.
-const OFTEN_ENOUGH: usize = 5;
 
 /// Something done at least once: its last result, and the shortest time, s, that `seconds` makes of a result and of the
 /// time it took.
@@ -31,7 +26,7 @@ pub(super) fn best_of<T, E>(
         let result = work()?;
         best = best.min(seconds(&result, this.elapsed().as_secs_f64()));
         repetitions += 1;
-        if repetitions == OFTEN_ENOUGH || begun.elapsed().as_secs_f64() > LONG_ENOUGH {
+        if repetitions == TUNING.often_enough || begun.elapsed().as_secs_f64() > TUNING.long_enough {
             return Ok((result, best));
         }
     }

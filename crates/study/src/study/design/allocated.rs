@@ -6,7 +6,8 @@ use super::axes::Axes;
 use super::points::{Studied, studied};
 use super::search;
 use super::surface::{Surface, scale};
-use super::{DesignError, Question, WIDEST};
+use super::tuning::TUNING;
+use super::{DesignError, Question};
 use crate::model::Description;
 use crate::results::{Allocation, DesignKind};
 use crate::study::{AllocateError, AllocateOptions, Options, allocate};
@@ -28,7 +29,7 @@ pub fn allocated(
     point: &[f64],
     options: &Options,
 ) -> Result<Option<Allocation>, DesignError> {
-    let asked = AllocateOptions { share: question.share, widest: WIDEST };
+    let asked = AllocateOptions { share: question.share, widest: TUNING.widest };
     let mut model = with_margin(&question.shown, question.goal.margin());
     model.requirements.truncate(question.required());
     match allocate(&axes.at(&model, &axes.with_present(point)), asked, options) {

@@ -1,5 +1,6 @@
 //! Parameters that are free or uncertain, and the models and samples with chosen nominal values.
 
+use super::tuning::TUNING;
 use super::width::Width;
 use crate::grammar::display_unit::DisplayUnit;
 use crate::methods::Chebyshev;
@@ -9,15 +10,6 @@ use crate::results::AllocatedTolerance;
 use crate::study::allocate::items;
 use crate::study::statistics;
 use symdiff::Formula;
-
-/// Digits of a nominal value that was found, of the range's width.
-const DIGITS: i32 = 4;
-
-/// Parameters of which both neighbours are tried.
-const ROUNDED: usize = 5;
-
-/// Error relative to an output's range that the surrogate aims at, where the model asks for none.
-const TOLERANCE: f64 = 1e-3;
 
 /// A parameter that is free or uncertain.
 #[derive(Clone, Debug)]
@@ -175,12 +167,15 @@ impl Axes {
         let mut all = vec![point.to_vec()];
         for (axis, own) in self.free.iter().enumerate() {
             let width = (own.upper - own.lower) / self.shown[axis];
-            let digits = DIGITS - symdiff::math::log10(width).floor() as i32;
+            let digits = TUNING.digits - symdiff::math::log10(width).floor() as i32;
             let unit = 10_f64.powi(digits.clamp(-300, 300)) / self.shown[axis];
             let near = |value: f64| (value / unit).clamp(own.lower, own.upper);
             let value = point[axis] * unit;
-            let choices =
-                if axis < ROUNDED { vec![near(value.floor()), near(value.ceil())] } else { vec![near(value.round())] };
+            let choices = if axis < TUNING.rounded_parameters {
+                vec![near(value.floor()), near(value.ceil())]
+            } else {
+                vec![near(value.round())]
+            };
             let with = |choice: &f64, point: &Vec<f64>| {
                 let mut point = point.clone();
                 point[axis] = *choice;
@@ -267,7 +262,7 @@ impl Axes {
         }
         model.statistics.asked = false;
         model.bounds.chebyshev = Some(Chebyshev::ADAPTIVE);
-        model.bounds.tolerance = Some(model.bounds.tolerance.unwrap_or(TOLERANCE).min(TOLERANCE));
+        model.bounds.tolerance = Some(model.bounds.tolerance.unwrap_or(TUNING.tolerance).min(TUNING.tolerance));
         model
     }
 }

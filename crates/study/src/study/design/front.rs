@@ -4,13 +4,11 @@ use super::axes::Axes;
 use super::goal::Goal;
 use super::points::Studied;
 use super::refine::refined;
-use super::search::{ROUGH, local};
-use super::{DesignError, Found, Question, WIDEST, found};
+use super::search::local;
+use super::tuning::TUNING;
+use super::{DesignError, Found, Question, found};
 use crate::results::DesignTrade;
 use crate::study::Options;
-
-/// Shares of the largest margin without tolerances at which the cost is told.
-const TRADED: [f64; 4] = [0.2, 0.4, 0.6, 0.8];
 
 /// Cost against margin: the optimum, then those that leave shares of the largest margin there is without tolerances,
 /// each near to the one before. It ends where no tolerances leave as much.
@@ -38,13 +36,14 @@ fn beyond(
     let Some(first) = first.filter(|first| first.found.is_feasible) else { return Ok(Vec::new()) };
     let mut front: Vec<DesignTrade> = trade(first).into_iter().collect();
     let mut start = first.point.clone();
-    for share in TRADED {
+    for share in TUNING.traded {
         if (options.interrupted)() || largest.is_nan() || largest <= 0.0 {
             break;
         }
         (options.stage)("cost against margin");
         let question = Question { goal: Goal::Cost(share * largest), ..question.clone() };
-        let rough = local(&all.surface, &mut *question.assessed(&all.surface)?, question.goal, &start, ROUGH);
+        let rough =
+            local(&all.surface, &mut *question.assessed(&all.surface)?, question.goal, &start, TUNING.rough_end);
         let Some(found) = refined(&question, axes, &rough, all, options)? else { break };
         let Some(own) = Some(&found).filter(|found| found.found.is_feasible).and_then(trade) else { break };
         front.push(own);
@@ -79,7 +78,7 @@ pub fn front_beside(
 ) -> Result<Vec<DesignTrade>, DesignError> {
     let question = Question { goal: Goal::Cost(0.0), is_least: true, ..question.clone() };
     let free = &counts.surface.axes.free;
-    let axes = Axes::priced(&question.model, free, WIDEST);
+    let axes = Axes::priced(&question.model, free, TUNING.widest);
     if axes.widths.is_empty() {
         return Ok(Vec::new());
     }

@@ -3,11 +3,9 @@
 use std::cmp::Ordering;
 
 use super::axes::Axes;
+use super::tuning::TUNING;
 use crate::model::{Design, Objective};
 use crate::numerics::Linear;
-
-/// Violations that differ by less are equal, and one of less is none: shares of limits.
-const ROUNDING: f64 = 1e-9;
 
 /// Objective, in the slacks of all requirements.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -59,7 +57,7 @@ impl Goal {
         match (self, slacks) {
             (Self::Last | Self::Cost(_), [limits @ .., last]) => {
                 let violation = (-least(limits)).max(0.0);
-                Merit { violation: if violation < ROUNDING { 0.0 } else { violation }, value: *last }
+                Merit { violation: if violation < TUNING.equal_violations { 0.0 } else { violation }, value: *last }
             }
             _ => Merit { violation: 0.0, value: least(slacks) },
         }
@@ -76,7 +74,7 @@ impl Goal {
 impl Merit {
     /// Whether it is better than another one.
     pub fn is_better(&self, other: &Self) -> bool {
-        match (self.violation - other.violation).abs() > ROUNDING {
+        match (self.violation - other.violation).abs() > TUNING.equal_violations {
             true => self.violation < other.violation,
             false => self.value > other.value,
         }

@@ -8,10 +8,8 @@ use std::ops::Range;
 
 use symdiff::Formula;
 
+use super::tuning::TUNING;
 use crate::model::{Analysis, Description, Requirement};
-
-/// Most instants of a requirement.
-const MOST: usize = 33;
 
 /// The model with nothing but what its requirements are of.
 pub fn required(description: &Description) -> Description {
@@ -55,6 +53,6 @@ fn instants(description: &Description, own: &Requirement) -> Option<Vec<f64>> {
     let ends = [(from / step).ceil(), (to.min(description.simulation.duration) / step * (1.0 + 1e-12)).floor()];
     let [first, last] = ends.map(|row| row as usize);
     let rows = last.checked_sub(first).filter(|rows| *rows > 0)?;
-    let count = rows.min(MOST - 1);
+    let count = rows.min(TUNING.instants - 1);
     Some((0..=count).map(|index| (first + (index * rows + count / 2) / count) as f64 * step).collect())
 }

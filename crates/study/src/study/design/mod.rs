@@ -19,6 +19,7 @@ mod refine;
 mod search;
 mod share;
 mod surface;
+pub(crate) mod tuning;
 mod width;
 mod worst;
 
@@ -40,13 +41,8 @@ use refine::refined;
 use search::{are_alike, optima};
 use share::Yield;
 use surface::Surface;
+use tuning::TUNING;
 use worst::{Assessed, Worst};
-
-/// Optima that are reported at most.
-const REPORTED: usize = 3;
-
-/// How many times the model's tolerances are allocated, at most.
-const WIDEST: f64 = 3.0;
 
 /// Why there is no design.
 #[derive(Debug, thiserror::Error)]
@@ -157,7 +153,7 @@ pub fn design(description: &Description, asked: DesignOptions, options: &Options
         let [model, at_instants] = [&shown, &at_instants].map(|own| reduced::expanded(own).into_owned());
         let goal = Goal::of(design);
         let axes = match goal {
-            Goal::Cost(_) => Axes::priced(&model, &design.free, WIDEST),
+            Goal::Cost(_) => Axes::priced(&model, &design.free, TUNING.widest),
             Goal::Margin | Goal::Last => Axes::of(&model, &design.free),
         };
         if matches!(goal, Goal::Cost(_)) && axes.widths.is_empty() {
@@ -204,7 +200,7 @@ fn designed(
         }
     }
     (options.stage)("the optimum with tolerances");
-    let mut found = found(question, axes, &known, REPORTED, options)?;
+    let mut found = found(question, axes, &known, TUNING.reported, options)?;
     let front = match question.goal {
         Goal::Cost(_) => front(question, axes, &mut found, largest, options)?,
         Goal::Margin => front_beside(question, &found.optima[0].point.clone(), largest, &mut found, options)?,

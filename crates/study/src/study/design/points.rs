@@ -3,6 +3,7 @@
 use super::axes::{Axes, without_tolerances};
 use super::goal::{Goal, Merit};
 use super::surface::{self, Surface, about, scale};
+use super::tuning::TUNING;
 use super::{DesignError, Question};
 use crate::model::{Description, Requirement};
 use crate::results::{
@@ -10,12 +11,6 @@ use crate::results::{
 };
 use crate::study::allocate::run_simulations;
 use crate::study::{Kept, Options, RunError, reduced, statistics, subsystems};
-
-/// Half of the region, as a share of the ranges, of the surrogate of which a quantile is told.
-const QUANTILE: f64 = 1e-3;
-
-/// A margin that is missed by less is left.
-const ROUNDING: f64 = 1e-9;
 
 /// A point with the study of its worst cases.
 #[derive(Clone, Debug)]
@@ -67,7 +62,8 @@ pub fn studied(
     let known: Vec<[f64; 2]> =
         known.map(|(found, own)| [found.margin, found.error].map(|part| part / scale(own))).collect();
     let least = known.iter().map(|[margin, _]| *margin).fold(f64::INFINITY, f64::min);
-    let leaves_enough = known.iter().all(|[margin, error]| margin - error >= question.goal.margin() - ROUNDING);
+    let leaves_enough =
+        known.iter().all(|[margin, error]| margin - error >= question.goal.margin() - TUNING.missed_margin);
     let mut studied = Studied {
         point: point.to_vec(),
         merit: merit(&all),
@@ -183,7 +179,8 @@ fn by_share(
     options: &Options,
 ) -> Result<bool, DesignError> {
     let point = studied.point.clone();
-    let surface = Surface::new(question, axes, &about(&point, &axes.ranges(), QUANTILE), &point, options)?;
+    let surface =
+        Surface::new(question, axes, &about(&point, &axes.ranges(), TUNING.region_of_quantile), &point, options)?;
     let slacks = question.assessed(&surface)?.slacks(&point);
     studied.of_surrogate = surface.simulations;
     studied.margins = slacks.iter().zip(&surface.scales).map(|(slack, scale)| slack * scale).collect();

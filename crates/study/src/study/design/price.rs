@@ -2,16 +2,10 @@
 
 use super::axes::Axes;
 use super::goal::Goal;
+use super::tuning::TUNING;
 use super::width::Width;
 use super::worst::Assessed;
 use crate::numerics::{Linear, best_step};
-
-/// Rounds in which a step's costs get their tangents, and what a tangent may leave, as a share of the cost.
-const ROUNDS: usize = 12;
-const CLOSE: f64 = 1e-7;
-
-/// Most times that tolerances are tightened until a point leaves its margin.
-const TIGHTENED: usize = 6;
 
 /// What counts where the cost is the objective: what requirements leave beyond a margin, then the cost with the other
 /// sign.
@@ -78,11 +72,11 @@ impl Assessed for Priced<'_> {
         let slopes = (0..k + count).map(|unknown| if unknown < k { 0.0 } else { -1.0 }).collect();
         let goal = [Linear { value: 0.0, slopes }];
         let mut step = Vec::new();
-        for _ in 0..ROUNDS {
+        for _ in 0..TUNING.rounds_of_tangents {
             step = best_step(&goal, &limits, &lowest, &highest);
             let is_below = |index: &usize| {
                 let own = cost(*index, step[first + index]);
-                step[k + index] < own - CLOSE * own.abs()
+                step[k + index] < own - TUNING.left_by_tangents * own.abs()
             };
             let below: Vec<usize> = (0..count).filter(is_below).collect();
             if below.is_empty() {
@@ -109,7 +103,7 @@ impl Assessed for Priced<'_> {
             |point: &[f64]| self.requirements.slacks(point).into_iter().fold(f64::INFINITY, f64::min) - margin;
         let without = left(&with(0.0));
         let mut factor = 1.0;
-        for _ in 0..TIGHTENED {
+        for _ in 0..TUNING.tightened {
             let own = left(&with(factor));
             // Nominal values that miss the margin are no matter of tolerances.
             if own >= 0.0 || without.is_nan() || without <= 0.0 {

@@ -2,11 +2,9 @@
 
 use super::goal::Goal;
 use super::surface::Surface;
+use super::tuning::TUNING;
 use super::{DesignError, Question};
 use crate::results::DesignProfile;
-
-/// Points of a profile.
-const POINTS: usize = 41;
 
 /// The profiles through a point on a surrogate; none of one that does not have the point.
 pub fn profiles(question: &Question, surface: &Surface, point: &[f64]) -> Result<Vec<DesignProfile>, DesignError> {
@@ -18,8 +16,8 @@ pub fn profiles(question: &Question, surface: &Surface, point: &[f64]) -> Result
     let sign = if question.is_least { -1.0 } else { 1.0 };
     let mut assessed = question.assessed(surface)?;
     let mut of = |(parameter, [lower, upper]): (usize, &[f64; 2])| {
-        let value = |index: usize| lower + (upper - lower) * index as f64 / (POINTS - 1) as f64;
-        let values: Vec<f64> = (0..POINTS).map(value).collect();
+        let value = |index: usize| lower + (upper - lower) * index as f64 / (TUNING.points_of_profile - 1) as f64;
+        let values: Vec<f64> = (0..TUNING.points_of_profile).map(value).collect();
         let mut profile = DesignProfile { parameter, values, nominal: Vec::new(), worst: Vec::new() };
         for value in &profile.values {
             let mut moved = point.to_vec();

@@ -4,24 +4,12 @@ use super::allocated;
 use super::axes::Axes;
 use super::goal::Goal;
 use super::points::{Studied, studied};
-use super::search::{self, Optimum, SHARP, local};
+use super::search::{self, Optimum, local};
 use super::surface::{Surface, about};
+use super::tuning::TUNING;
 use super::{DesignError, Found, Question};
 use crate::results::DesignKind;
 use crate::study::Options;
-
-/// Narrower regions, as shares of the ranges to either side; each is tried so often where the optimum is at its edge.
-const REGIONS: [f64; 2] = [0.12, 0.03];
-const MOVES: usize = 8;
-
-/// An optimum nearer to the edge of a region than this share of it is on it.
-const EDGE: f64 = 1e-3;
-
-/// Reserve of a requirement, in multiples of what a study has missed.
-const RESERVED: f64 = 1.2;
-
-/// Studies that correct the surrogate, at most.
-const CORRECTIONS: usize = 4;
 
 /// The optimum near to a rough one, with its study; `None` where the mechanism cannot be run there, or
 /// the optimum is known.
@@ -35,11 +23,11 @@ pub fn refined(
     let ranges = axes.ranges();
     let mut point = rough.point.clone();
     let mut last = None;
-    for share in REGIONS {
-        for _ in 0..MOVES {
+    for share in TUNING.regions {
+        for _ in 0..TUNING.moves {
             let surface = Surface::new(question, axes, &about(&point, &ranges, share), &point, options)?;
             all.add(&surface);
-            point = local(&surface, &mut *question.assessed(&surface)?, question.goal, &point, SHARP).point;
+            point = local(&surface, &mut *question.assessed(&surface)?, question.goal, &point, TUNING.sharp_end).point;
             let is_inside = !is_at_edge(&point, &surface.region, &ranges);
             last = Some(surface);
             if is_inside || (options.interrupted)() {
@@ -69,7 +57,7 @@ fn confirmed(
     options: &Options,
 ) -> Result<Option<Studied>, DesignError> {
     let mut best: Option<Studied> = None;
-    for _ in 0..CORRECTIONS {
+    for _ in 0..TUNING.corrections {
         point = search::best_of(&mut *question.assessed(&surface)?, question.goal, axes.rounded(&point), point);
         let Some(found) = studied(question, axes, &point, DesignKind::Optimum, options)? else { break };
         all.simulations += found.of_surrogate;
@@ -80,7 +68,7 @@ fn confirmed(
             // What a rounded point misses is kept in reserve, too.
             let missed = (-known).max(0.0);
             surface.reserves[requirement] +=
-                surface.scales[requirement] * left[requirement] - known + RESERVED * missed;
+                surface.scales[requirement] * left[requirement] - known + TUNING.reserved * missed;
         }
         let is_better = |best: &Studied| match is_feasible == best.found.is_feasible {
             true => found.merit.is_better(&best.merit),
@@ -92,7 +80,7 @@ fn confirmed(
         if is_feasible || (options.interrupted)() {
             break;
         }
-        point = local(&surface, &mut *question.assessed(&surface)?, question.goal, &point, SHARP).point;
+        point = local(&surface, &mut *question.assessed(&surface)?, question.goal, &point, TUNING.sharp_end).point;
     }
     Ok(best)
 }
@@ -100,7 +88,7 @@ fn confirmed(
 /// Whether a point is at an end of a region where the range does not end.
 fn is_at_edge(point: &[f64], region: &[[f64; 2]], ranges: &[[f64; 2]]) -> bool {
     point.iter().zip(region).zip(ranges).any(|((value, own), range)| {
-        let edge = EDGE * (own[1] - own[0]);
+        let edge = TUNING.edge * (own[1] - own[0]);
         (value - own[0] < edge && own[0] > range[0]) || (own[1] - value < edge && own[1] < range[1])
     })
 }

@@ -6,45 +6,11 @@
 
 use super::goal::{Goal, Merit};
 use super::surface::Surface;
+use super::tuning::TUNING;
 use super::worst::Assessed;
 use super::{DesignError, Question};
 use crate::numerics::{Design, Linear, corners};
 use crate::study::Options;
-
-/// Starts that are compared, for each free parameter, and those that are followed.
-const STARTS: usize = 16;
-const MOST_STARTS: usize = 96;
-const FOLLOWED: usize = 4;
-
-/// The trust region in shares of the region: at first, and at most.
-const FIRST: f64 = 0.2;
-const LARGEST: f64 = 0.5;
-
-/// Where a search ends, in the same shares: one over whole ranges, and one that makes an optimum sharper.
-pub const ROUGH: f64 = 1e-3;
-pub const SHARP: f64 = 1e-4;
-
-/// Corners of the tolerances at which starts are compared.
-const CASES: usize = 16;
-
-/// How the trust region changes after a step that is better, and one that is not.
-const WIDER: f64 = 1.6;
-const NARROWER: f64 = 0.4;
-
-/// The trust region when at last nothing may be missed, in multiples of the smallest.
-const RESTORED: f64 = 100.0;
-
-/// What a violation counts, in multiples of what a goal gains by it.
-const PRICE: f64 = 5.0;
-
-/// Steps that are tried again with the cases that they showed, before the trust region shrinks.
-const AGAIN: usize = 4;
-
-/// Most steps of a search.
-const STEPS: usize = 120;
-
-/// Optima nearer than this, as a share of the region along each axis, are one.
-const ALIKE: f64 = 0.02;
 
 /// A point with its merit.
 #[derive(Clone, Debug)]
@@ -66,7 +32,7 @@ pub fn optima(
         if (options.interrupted)() {
             return Err(DesignError::Interrupted);
         }
-        let own = local(surface, &mut *question.assessed(surface)?, goal, &start, ROUGH);
+        let own = local(surface, &mut *question.assessed(surface)?, goal, &start, TUNING.rough_end);
         let nominal = &surface.region[..surface.axes.free.len()];
         match found.iter_mut().find(|other| are_alike(nominal, &other.point, &own.point)) {
             Some(other) if own.merit.is_better(&other.merit) => *other = own,
@@ -81,12 +47,16 @@ pub fn optima(
 /// The points to begin at: those known, and the best of those spread over the region that are apart.
 fn starts(surface: &Surface, goal: Goal, known: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let k = surface.region.len();
-    let spread = Design::Sobol.points(k, (STARTS * k).min(MOST_STARTS), 0..(STARTS * k).min(MOST_STARTS));
+    let spread = Design::Sobol.points(
+        k,
+        (TUNING.starts_a_parameter * k).min(TUNING.most_starts),
+        0..(TUNING.starts_a_parameter * k).min(TUNING.most_starts),
+    );
     let in_region = |shares: &Vec<f64>| -> Vec<f64> {
         shares.iter().zip(&surface.region).map(|(share, [lower, upper])| lower + share * (upper - lower)).collect()
     };
     // A few cases tell which are worth it.
-    let cases: Vec<Vec<f64>> = corners(surface.axes.uncertain(), CASES);
+    let cases: Vec<Vec<f64>> = corners(surface.axes.uncertain(), TUNING.corners_of_starts);
     let points: Vec<Vec<f64>> = spread.iter().map(in_region).collect();
     let samples: Vec<Vec<f64>> =
         points.iter().flat_map(|point| cases.iter().map(|xi| surface.axes.sample(point, xi))).collect();
@@ -107,7 +77,9 @@ fn starts(surface: &Surface, goal: Goal, known: &[Vec<f64>]) -> Vec<Vec<f64>> {
             let along = other.iter().zip(&own.point).zip(&surface.region);
             along.map(|((a, b), [lower, upper])| ((a - b) / (upper - lower)).abs()).fold(0.0, f64::max)
         };
-        if chosen.len() < known.len() + FOLLOWED && chosen.iter().all(|other| distance(other) > FIRST) {
+        if chosen.len() < known.len() + TUNING.followed_starts
+            && chosen.iter().all(|other| distance(other) > TUNING.first_radius)
+        {
             chosen.push(own.point);
         }
     }
@@ -117,7 +89,7 @@ fn starts(surface: &Surface, goal: Goal, known: &[Vec<f64>]) -> Vec<Vec<f64>> {
 /// Whether two optima of a region of nominal values are one.
 pub fn are_alike(region: &[[f64; 2]], a: &[f64], b: &[f64]) -> bool {
     let along = a.iter().zip(b).zip(region);
-    along.into_iter().all(|((a, b), [lower, upper])| (a - b).abs() <= ALIKE * (upper - lower))
+    along.into_iter().all(|((a, b), [lower, upper])| (a - b).abs() <= TUNING.same_optimum * (upper - lower))
 }
 
 /// The optimum that a search from a start ends at, with steps down to the share `smallest` of the region.
@@ -127,14 +99,14 @@ pub fn local(surface: &Surface, assessed: &mut dyn Assessed, goal: Goal, start: 
     let mut best = Optimum { merit: goal.merit(&assessed.slacks(&point)), point };
     // Tolerances can always make up for a violation.
     let least_weight = if matches!(goal, Goal::Cost(_)) { f64::INFINITY } else { 0.0 };
-    let (mut radius, mut weight, mut again) = (FIRST, least_weight, 0);
-    for _ in 0..STEPS {
+    let (mut radius, mut weight, mut again) = (TUNING.first_radius, least_weight, 0);
+    for _ in 0..TUNING.steps_of_search {
         // A step along limits leaves them by its square: violations have a price. At last nothing may be missed.
         if radius < smallest && (weight.is_infinite() || best.merit.violation == 0.0) {
             break;
         }
         if radius < smallest {
-            (radius, weight) = (RESTORED * smallest, f64::INFINITY);
+            (radius, weight) = (TUNING.restored * smallest, f64::INFINITY);
         }
         let [goals, limits] = goal.split(assessed.count(), assessed.linearised(&best.point));
         weight = weight.max(price(surface, &goals, &limits));
@@ -155,11 +127,11 @@ pub fn local(surface: &Surface, assessed: &mut dyn Assessed, goal: Goal, start: 
         }
         if merit.is_better_by(&best.merit, weight) {
             best = Optimum { point, merit };
-            (radius, again) = ((WIDER * radius).min(LARGEST), 0);
-        } else if assessed.has_learnt() && again < AGAIN {
+            (radius, again) = ((TUNING.wider * radius).min(TUNING.largest_radius), 0);
+        } else if assessed.has_learnt() && again < TUNING.tried_again {
             again += 1;
         } else {
-            (radius, again) = (NARROWER * radius, 0);
+            (radius, again) = (TUNING.narrower * radius, 0);
         }
     }
     best
@@ -194,5 +166,5 @@ fn price(surface: &Surface, goals: &[Linear], limits: &[Linear]) -> f64 {
         along.map(|(slope, [lower, upper])| (slope * (upper - lower)).abs()).sum::<f64>()
     };
     let nearest = limits.iter().min_by(|a, b| a.value.total_cmp(&b.value)).map(change).filter(|change| *change > 0.0);
-    nearest.map_or(0.0, |nearest| PRICE * goals.iter().map(change).fold(0.0, f64::max) / nearest)
+    nearest.map_or(0.0, |nearest| TUNING.price_of_violation * goals.iter().map(change).fold(0.0, f64::max) / nearest)
 }

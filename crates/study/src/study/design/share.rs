@@ -2,17 +2,12 @@
 
 use super::goal::Goal;
 use super::surface::Surface;
+use super::tuning::TUNING;
 use super::worst::{Assessed, around, quotients};
 use crate::numerics::Linear;
 use crate::numerics::statistics::{Mixture, weighted_quantile};
+use crate::study::allocate;
 use crate::study::statistics::Laws;
-
-/// Samples.
-const POINTS: usize = 1 << 12;
-
-/// Samples about the quantile from which its derivatives are taken, as shares of what may fail, and at least so many.
-const BESIDE: [f64; 2] = [0.4, 2.5];
-const LEAST: usize = 64;
 
 /// Of a share of the samples of the parameters' laws, which go with the nominal values.
 pub struct Yield<'s> {
@@ -28,7 +23,7 @@ pub struct Yield<'s> {
 impl<'s> Yield<'s> {
     /// Of these laws about a point.
     pub fn new(surface: &'s Surface, goal: Goal, laws: &Laws, from: &[f64], share: f64) -> Self {
-        let (points, weights) = Mixture::default().replicate(0, laws.dimension(), POINTS);
+        let (points, weights) = Mixture::default().replicate(0, laws.dimension(), TUNING.samples_of_share);
         let values = points.iter().map(|scores| laws.of_scores(scores)).collect();
         Self { surface, goal, values, weights, from: from.to_vec(), may_fail: 1.0 - share }
     }
@@ -57,8 +52,13 @@ impl<'s> Yield<'s> {
         let mut order: Vec<usize> = (0..values.len()).collect();
         order.sort_by(|&a, &b| values[a].total_cmp(&values[b]).then(a.cmp(&b)));
         let index = |times: f64| ((times * self.may_fail * values.len() as f64) as usize).min(values.len());
-        let (from, to) = (index(BESIDE[0]), index(BESIDE[1]));
-        if to < from + LEAST { order[..LEAST].to_vec() } else { order[from..to].to_vec() }
+        let (from, to) =
+            (index(allocate::tuning::TUNING.beside_quantile[0]), index(allocate::tuning::TUNING.beside_quantile[1]));
+        if to < from + allocate::tuning::TUNING.fewest_beside {
+            order[..allocate::tuning::TUNING.fewest_beside].to_vec()
+        } else {
+            order[from..to].to_vec()
+        }
     }
 }
 

@@ -4,19 +4,12 @@ use std::ops::Range;
 
 use super::axes::Axes;
 use super::goal::Goal;
+use super::tuning::TUNING;
 use super::{DesignError, Question};
 use crate::methods::Method;
 use crate::model::Requirement;
-use crate::study::allocate::run_simulations;
+use crate::study::allocate::{self, run_simulations};
 use crate::study::{Kept, Options, RunError, subsystems};
-
-/// A margin that is unknown is taken for one that is missed by this share of its limit.
-const UNKNOWN: f64 = -10.0;
-
-/// Where there is no surrogate over a region, one about the same middle is tried that is this share of it, so many
-/// times.
-const NARROWER: f64 = 0.5;
-const TRIES: usize = 4;
 
 /// A surrogate of all margins over a region of nominal values and the tolerances about them.
 pub struct Surface {
@@ -49,7 +42,7 @@ impl Surface {
         let mut region = region.to_vec();
         let mut simulations = 0;
         let mut failure = None;
-        for _ in 0..TRIES {
+        for _ in 0..TUNING.narrower_regions {
             let over = axes.over(model, &region, question.share.is_some());
             let options = Options { methods: Some(vec![Method::Chebyshev]), store: None, ..*options };
             match subsystems::run(&over, &options, true) {
@@ -69,8 +62,8 @@ impl Surface {
                 return Err(DesignError::Interrupted);
             }
             for ([lower, upper], middle) in region.iter_mut().zip(about) {
-                *lower = middle - NARROWER * (middle - *lower);
-                *upper = middle + NARROWER * (*upper - middle);
+                *lower = middle - TUNING.narrower_region * (middle - *lower);
+                *upper = middle + TUNING.narrower_region * (*upper - middle);
             }
         }
         Err(failure.map_or(DesignError::NoSurrogate, DesignError::Run))
@@ -98,12 +91,15 @@ impl Surface {
     /// The same at the instants of all requirements, instant by instant.
     pub fn at_instants(&self, samples: &[Vec<f64>]) -> Vec<f64> {
         let all = self.instants.last().map_or(0, |last| last.end);
-        let Some(margins) = self.kept.margins() else { return vec![UNKNOWN; all * samples.len()] };
+        let Some(margins) = self.kept.margins() else {
+            return vec![allocate::tuning::TUNING.unknown_margin; all * samples.len()];
+        };
         let mut slacks = margins.values(samples);
         for (requirement, instants) in self.instants.iter().enumerate() {
             let (reserve, scale) = (self.reserves[requirement], self.scales[requirement]);
             for slack in &mut slacks[instants.start * samples.len()..instants.end * samples.len()] {
-                *slack = if slack.is_nan() { UNKNOWN } else { (*slack - reserve) / scale };
+                *slack =
+                    if slack.is_nan() { allocate::tuning::TUNING.unknown_margin } else { (*slack - reserve) / scale };
             }
         }
         slacks

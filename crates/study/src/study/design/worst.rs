@@ -1,14 +1,8 @@
 //! What the worst case leaves, as a function of the nominal values.
 
 use super::surface::Surface;
+use super::tuning::TUNING;
 use crate::numerics::{ExtremeSearch, Extremes, Linear, best_step};
-
-/// Worst cases that are remembered for each requirement; those nearer than this, in ξ, are one.
-const REMEMBERED: usize = 12;
-const ALIKE: f64 = 0.05;
-
-/// A difference quotient's step, as a share of the region's width.
-const STEP: f64 = 1e-4;
 
 /// What the samples that count leave of the requirements about a point.
 pub trait Assessed {
@@ -75,11 +69,12 @@ impl Assessed for Worst<'_> {
         let Ok(found) = self.search.extremes(surface.count(), &self.before, &places, evaluate);
         self.has_learnt = false;
         for (known, found) in self.known.iter_mut().zip(&found) {
-            let is_near = |other: &Vec<f64>| other.iter().zip(&found.lowest).all(|(a, b)| (a - b).abs() < ALIKE);
+            let is_near =
+                |other: &Vec<f64>| other.iter().zip(&found.lowest).all(|(a, b)| (a - b).abs() < TUNING.same_case);
             self.has_learnt |= !known.iter().any(is_near);
             known.retain(|other| !is_near(other));
             known.push(found.lowest.clone());
-            let spare = known.len().saturating_sub(REMEMBERED);
+            let spare = known.len().saturating_sub(TUNING.remembered);
             known.drain(..spare);
         }
         let slacks = found.iter().map(|found| found.range.lower).collect();
@@ -119,7 +114,7 @@ pub fn around(surface: &Surface, point: &[f64]) -> Vec<Vec<f64>> {
     for (axis, [lower, upper]) in surface.region.iter().enumerate() {
         for sign in [-1.0, 1.0] {
             let mut moved = point.to_vec();
-            moved[axis] = (moved[axis] + sign * STEP * (upper - lower)).clamp(*lower, *upper);
+            moved[axis] = (moved[axis] + sign * TUNING.step_of_difference * (upper - lower)).clamp(*lower, *upper);
             points.push(moved);
         }
     }

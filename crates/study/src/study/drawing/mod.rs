@@ -4,6 +4,7 @@
 
 pub(super) mod asked;
 mod solids;
+pub(crate) mod tuning;
 
 use std::collections::BTreeSet;
 
@@ -21,12 +22,7 @@ use crate::numerics::Sample;
 use crate::results::{Drawing, DrawnBody, DrawnElement, DrawnLength, DrawnPoint};
 use crate::simulate::Assembled;
 use asked::{Asked, AskedBody, AskedVector, Frame, Values};
-
-/// Of bodies with more points, no lengths are sought: their pairs are too many to be read in a drawing.
-const MOST_POINTS: usize = 12;
-
-/// A distance is a parameter where it equals it to this share of its width at both its ends.
-const SAME: f64 = 1e-6;
+use tuning::TUNING;
 
 /// Draws a model's nominal start.
 ///
@@ -99,7 +95,7 @@ pub(super) fn drawn(description: &Description, along: Option<[f64; 2]>) -> Resul
 /// Asks the distances of each body's points, two and two.
 fn pairs_of_points(description: &Description, asked: &mut Asked) -> Vec<[PointRef; 2]> {
     let mut pairs = Vec::new();
-    let few = |(_, body): &(usize, &Body)| body.points.len() <= MOST_POINTS;
+    let few = |(_, body): &(usize, &Body)| body.points.len() <= TUNING.most_points;
     for (body, known) in description.bodies.iter().enumerate().filter(few) {
         for (second, point) in known.points.iter().enumerate() {
             for (first, other) in known.points[..second].iter().enumerate() {
@@ -264,7 +260,7 @@ impl Scene<'_> {
                 sample[index] = end;
                 assembled.outputs_at_start(first..first + pairs.len(), &sample.into())
             });
-            let allowed = SAME * (parameter.upper - parameter.lower);
+            let allowed = TUNING.same_length * (parameter.upper - parameter.lower);
             let is_it = |pair: &usize| (0..2).all(|end| (distances[end][*pair].sqrt() - ends[end]).abs() <= allowed);
             let Some(pair) = (0..pairs.len()).find(is_it) else { continue };
             found.push(DrawnLength {

@@ -5,12 +5,10 @@ use std::sync::atomic::Ordering;
 use symdiff::jet::JetSpace;
 
 use super::Motions;
+use super::tuning::TUNING;
 use crate::methods::Ensemble;
 use crate::numerics::{CutMotions, STEP_NODES, Sample, SegmentMotions};
 use crate::simulate::{JetBox, SegmentRun, SimulationError, segment_jets};
-
-/// Values of motions that are held at once, at most.
-const MOST_VALUES: usize = 1 << 26;
 
 /// As [`Ensemble::segments`].
 ///
@@ -18,7 +16,7 @@ const MOST_VALUES: usize = 1 << 26;
 /// Where a sample cannot be assembled.
 pub fn cut(motions: &Motions, samples: &[Sample]) -> Result<Option<CutMotions>, SimulationError> {
     let Some(segments) = motions.schedule.segments() else { return Ok(None) };
-    if STEP_NODES * segments.count() * 2 * motions.scales().len() * samples.len() > MOST_VALUES {
+    if STEP_NODES * segments.count() * 2 * motions.scales().len() * samples.len() > TUNING.most_values {
         return Ok(None);
     }
     let run = SegmentRun::start(motions.simulator, samples, segments, motions.schedule.end())?;

@@ -1,15 +1,10 @@
 //! Motions at times between the rows.
 
 use super::Motions;
+use super::tuning::TUNING;
 use crate::methods::DenseMotions;
 use crate::numerics::Sample;
 use crate::simulate::{Observed, Schedule, SimulationError, Steps, integrator};
-
-/// Times for each step at which a motion is dense.
-const DENSE: usize = 8;
-
-/// Times that are observed at once.
-const AT_ONCE: usize = 64;
 
 /// As [`Ensemble::dense_motions`](crate::methods::Ensemble::dense_motions): of explicit steps, which tell what lies
 /// inside them. None at an interruption.
@@ -21,15 +16,15 @@ pub fn dense(motions: &Motions, samples: &[Sample]) -> Result<Option<DenseMotion
         return Ok(None);
     }
     let (end, ends) = (motions.schedule.end(), motions.schedule.ends());
-    let dense =
-        Schedule::passing(end, end / (DENSE * ends.len()) as f64, ends, Vec::new()).taken(motions.schedule.integration);
+    let dense = Schedule::passing(end, end / (TUNING.times_a_step * ends.len()) as f64, ends, Vec::new())
+        .taken(motions.schedule.integration);
     let mut run = integrator(motions.simulator, samples, &dense)?;
     run.heed(motions.interruption);
     let lines = 2 * motions.simulator.system.q.len() * samples.len();
     let stride = Observed::Motion.count(motions.simulator) * samples.len();
     let (mut motions, mut block) = (Vec::with_capacity(dense.rows * lines), Vec::new());
-    for first in (0..dense.rows).step_by(AT_ONCE) {
-        let rows = first..(first + AT_ONCE).min(dense.rows);
+    for first in (0..dense.rows).step_by(TUNING.times_at_once) {
+        let rows = first..(first + TUNING.times_at_once).min(dense.rows);
         run.advance(Steps { schedule: &dense, controller: None }, rows, Observed::Motion, &mut block);
         if run.is_cut() {
             return Ok(None);

@@ -5,13 +5,11 @@ use std::sync::atomic::Ordering;
 
 use symdiff::jet::JetSpace;
 
+use super::tuning::TUNING;
 use super::visits::visit_jets;
 use super::{Motions, effort, stopped_at};
 use crate::methods::{JET_WORK, Simulated};
 use crate::simulate::{JetBox, SimulationError, jet_integrator};
-
-/// Rows of a block.
-const BLOCK: usize = 64;
 
 /// As [`Ensemble::jets`](crate::methods::Ensemble::jets).
 ///
@@ -46,7 +44,7 @@ pub fn jet_about(
     jet.heed(motions.interruption);
     let (mut values, mut stop, mut next) = (Vec::new(), None, 0);
     while next < motions.schedule.rows && stop.is_none() {
-        let rows = next..(next + BLOCK).min(motions.schedule.rows);
+        let rows = next..(next + TUNING.rows_of_jets).min(motions.schedule.rows);
         stop = jet.advance(motions.schedule, rows.clone(), &mut values);
         if jet.is_cut() {
             break;

@@ -12,6 +12,7 @@ mod progress;
 mod reducing;
 mod stored;
 mod told;
+pub(crate) mod tuning;
 mod visits;
 
 use std::ops::Range as Rows;
@@ -42,19 +43,7 @@ pub(super) use progress::Progress;
 pub(super) use stored::{Stored, bytes_of_scan, bytes_of_values, samples_of_part, simulate_part};
 pub(super) use told::stopped_at;
 use told::{effort, observed};
-
-/// Values (rows × lines × samples) that one block holds.
-const BLOCK: usize = 1 << 20;
-
-/// Most rows of a block.
-const MOST_ROWS: usize = 64;
-
-/// A range that is narrower than this, relative to the model's size and the run's duration, is rounding: Newton's
-/// iteration ends at 1e-12 or so.
-const AT_REST: f64 = 1e-10;
-
-/// The same of a number whose size nothing tells.
-const NUMBER_AT_REST: f64 = 1e-12;
+use tuning::TUNING;
 
 /// A mechanism under one schedule.
 pub(super) struct Motions<'a> {
@@ -158,7 +147,7 @@ impl<'a> Motions<'a> {
 
     /// Rows of a block with so many lines of so many samples.
     pub fn rows_a_block(lines: usize, samples: usize) -> usize {
-        (BLOCK / (lines * samples).max(1)).clamp(1, MOST_ROWS)
+        (TUNING.block_values / (lines * samples).max(1)).clamp(1, TUNING.most_rows)
     }
 
     /// As [`Ensemble::simulate`], whether or not simulations are stored.
@@ -264,7 +253,7 @@ impl Ensemble for Motions<'_> {
         // Accelerations are second differences over steps, and forces are what these do to all masses.
         let sizes = [system.length, system.mass_of_bodies, duration, self.schedule.first_step()];
         let dimension = system.outputs[output].dimension.filter(|own| *own != Dimension::NUMBER);
-        let share = dimension.map_or(NUMBER_AT_REST, |own| AT_REST * own.size(sizes));
+        let share = dimension.map_or(TUNING.number_at_rest, |own| TUNING.at_rest * own.size(sizes));
         if share.is_finite() { share } else { 0.0 }
     }
 

@@ -5,20 +5,12 @@ use std::sync::atomic::Ordering;
 
 use super::Motions;
 use super::reducing::keep_reduced;
+use super::tuning::TUNING;
 use crate::methods::{Ensemble, Observed, Sampling, Simulated, Until, lines, scan_shard};
 use crate::numerics::{Sample, ScanBounds, ScanGrid};
 use crate::simulate::{SimulationError, Steps};
 use crate::store::{PartReader, PartStore, ScanPart, StoreError, Task};
-use crate::study::price::tuning::TUNING;
-
-/// Values of a part are about so many bytes, in samples between [`FEWEST`] and [`MOST`], a whole number of the widest
-/// tiles.
-const PART_BYTES: usize = 64 << 20;
-const FEWEST: usize = 32;
-const MOST: usize = 1024;
-
-/// Numbers that a part of a scan has for each row and output.
-const NUMBERS_OF_SCAN: usize = 5;
+use crate::study::price;
 
 /// Where the simulations of a study are stored.
 #[derive(Clone, Copy)]
@@ -38,7 +30,8 @@ fn of_store(error: StoreError) -> SimulationError {
 /// Samples of a part with so many lines and rows.
 pub(in crate::study) fn samples_of_part(lines: usize, rows: usize) -> usize {
     let of_sample = (8 * lines * rows).max(1);
-    (PART_BYTES / of_sample).clamp(FEWEST, MOST) / FEWEST * FEWEST
+    (TUNING.part_bytes / of_sample).clamp(TUNING.fewest_of_part, TUNING.most_of_part) / TUNING.fewest_of_part
+        * TUNING.fewest_of_part
 }
 
 impl Stored<'_> {
@@ -237,11 +230,11 @@ fn deliver(
 /// What a task is expected to take on one core, s.
 fn seconds_of(motions: &Motions, task: &Task) -> f64 {
     if motions.source.is_some() {
-        return task.samples.len() as f64 * TUNING.answer_seconds;
+        return task.samples.len() as f64 * price::tuning::TUNING.answer_seconds;
     }
     let schedule = motions.steps().schedule;
     let steps = (schedule.steps_before(schedule.rows.saturating_sub(1)) * schedule.integration.steps()) as f64;
-    task.samples.len() as f64 * steps * motions.instructions_of_step() * TUNING.instruction_seconds
+    task.samples.len() as f64 * steps * motions.instructions_of_step() * price::tuning::TUNING.instruction_seconds
 }
 
 /// Size of a task's part.
@@ -259,5 +252,5 @@ pub(in crate::study) fn bytes_of_values(lines: usize, rows: usize, samples: usiz
 
 /// Size of the parts of a scan of so many samples, at most.
 pub(in crate::study) fn bytes_of_scan(outputs: usize, rows: usize, samples: usize) -> u64 {
-    bytes_of_values(NUMBERS_OF_SCAN * outputs, rows, samples.div_ceil(ScanGrid::LEAST_SHARD))
+    bytes_of_values(TUNING.numbers_of_scan * outputs, rows, samples.div_ceil(ScanGrid::LEAST_SHARD))
 }

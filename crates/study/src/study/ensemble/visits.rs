@@ -8,13 +8,11 @@ use symdiff::jet::JetSpace;
 
 use super::answered::answered;
 use super::reducing::keep_reduced;
+use super::tuning::TUNING;
 use super::{Motions, stopped_at};
 use crate::methods::{Effort, JET_WORK, Sampling, Simulated, Until};
 use crate::numerics::Sample;
 use crate::simulate::{SimulationError, SingularPass, Steps, Stop, Visit};
-
-/// Samples that are visited at once.
-const BLOCK: usize = 256;
 
 fn times(motions: &Motions) -> Vec<f64> {
     (0..motions.schedule.rows).map(|row| motions.schedule.time(row)).collect()
@@ -47,7 +45,7 @@ pub fn visit_watching(
     let mut stops: Vec<Stop> = Vec::new();
     let mut singular = Vec::new();
     let mut visited = 0;
-    for (block, samples) in samples.chunks(BLOCK).enumerate() {
+    for (block, samples) in samples.chunks(TUNING.visited_at_once).enumerate() {
         if !stops.is_empty() && sampling.until == Until::FirstStop {
             break;
         }
@@ -66,7 +64,7 @@ pub fn visit_watching(
             break;
         }
         for (index, visit) in found.into_iter().enumerate() {
-            let (visit, sample) = (visit?, block * BLOCK + index);
+            let (visit, sample) = (visit?, block * TUNING.visited_at_once + index);
             for (line, value) in visit.values.into_iter().enumerate() {
                 values[line * count + sample] = value;
             }

@@ -7,17 +7,9 @@
 
 use super::motions::{Asked, ExcitedMotions, functional, in_row};
 use super::point::Point;
+use super::tuning::TUNING;
 use crate::numerics::{Worst, value};
 use crate::simulate::Gradient;
-
-/// Halvings of a step that is worse.
-const HALVINGS: i32 = 4;
-
-/// What a step gains at least, as a share of what the first one promised.
-const WORTH: f64 = 1e-4;
-
-/// A simulation that ends this share of what its gradient promised beside that is not one of a linear output.
-const BENT: f64 = 1e-3;
 
 /// A climb to an end.
 pub struct Climb {
@@ -110,7 +102,7 @@ impl Climb {
         let reached = self.sign * value;
         let Some((start, promise)) = self.first else { return false };
         let beside = (reached - start - promise).abs();
-        let arrives = beside <= BENT * promise;
+        let arrives = beside <= TUNING.bent * promise;
         if arrives && let Some(point) = self.next.take() {
             self.promise = beside;
             self.best = Some((point, reached));
@@ -158,7 +150,7 @@ impl Climb {
         if self.parts.is_empty() {
             self.parts.clone_from(&parts);
         }
-        self.next = (promise > WORTH * first).then_some(worst);
+        self.next = (promise > TUNING.worth_of_step * first).then_some(worst);
         (self.promise, self.promised, self.cells) = (promise, promise, cells);
         self.promises = parts;
         if std::mem::take(&mut self.is_guided) {
@@ -185,7 +177,7 @@ impl Climb {
         }
         self.promise = self.promises.iter().sum();
         self.promised = self.promise;
-        if self.halvings <= HALVINGS {
+        if self.halvings <= TUNING.halvings {
             self.next = Some(next);
         } else {
             // A part of the step that gains nothing bounds what the whole of it does, along its line.

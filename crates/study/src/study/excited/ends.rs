@@ -9,32 +9,11 @@
 use super::climb::Climb;
 use super::motions::{Asked, ExcitedMotions, in_row};
 use super::point::Point;
-use crate::numerics::step_error;
+use super::tuning::TUNING;
+use crate::numerics::{SAFETY_OF_STEPS, step_error};
 use crate::simulate::{Schedule, SimulationError, Simulator};
 use crate::study::bounding::{FunctionEnd, FunctionEnds};
 use crate::study::problem::Study;
-
-/// Outputs and rows whose kernels are in memory at once.
-const AT_ONCE: usize = 128;
-
-/// Rows in which an output's end is followed first; those between learn from them.
-const FOLLOWED: usize = 8;
-
-/// Steps of a climb, and of one from a neighbour's function.
-pub(super) const STEPS: usize = 24;
-const LEARNT: usize = 8;
-
-/// How often ends are climbed to from elsewhere.
-const ROUNDS: usize = 3;
-
-/// Rows in which the steps' error of ends that are not followed is measured.
-const CHECKED: usize = 16;
-
-/// Error of steps over the change by halved ones where a function jumps: by the scheme, a jump takes a step.
-pub(super) const FIRST_ORDER: f64 = 2.0;
-
-/// Factor by which these estimates may be wrong, as with validation samples.
-pub(super) const SAFETY: f64 = 1.25;
 
 /// An end of an output that is not linear in the functions.
 struct Bent {
@@ -60,7 +39,7 @@ pub fn ends<'s, 'm>(
     let mut search = Search { motions, found, bent: Vec::new() };
     let checked: Vec<usize> = checked(rows);
     let all: Vec<(usize, usize)> = (0..rows).flat_map(|row| (0..outputs).map(move |output| (row, output))).collect();
-    for some in all.chunks(AT_ONCE) {
+    for some in all.chunks(TUNING.kernels_at_once) {
         search.straight(some, &checked)?;
     }
     search.follow_bent()?;
@@ -70,7 +49,7 @@ pub fn ends<'s, 'm>(
 
 /// Some rows, ascending, the last of all among them.
 fn checked(rows: usize) -> Vec<usize> {
-    let count = CHECKED.min(rows);
+    let count = TUNING.checked_rows.min(rows);
     (1..=count).map(|number| (number * rows).div_ceil(count) - 1).collect()
 }
 
@@ -130,7 +109,7 @@ impl Search<'_, '_> {
         // The last row of each output's end, and every so many before it.
         let (mut followed, mut between): (Vec<Climb>, Vec<Bent>) = (Vec::new(), Vec::new());
         for of_end in bent.chunk_by(|a, b| a.output == b.output && a.sign == b.sign) {
-            let every = of_end.len().div_ceil(FOLLOWED);
+            let every = of_end.len().div_ceil(TUNING.followed_rows);
             for (number, own) in of_end.iter().enumerate() {
                 if (of_end.len() - 1 - number) % every == 0 {
                     followed.push(Climb::new(own.row, own.output, own.sign, self.motions.middle()));
@@ -139,10 +118,10 @@ impl Search<'_, '_> {
                 }
             }
         }
-        self.follow(&mut followed, STEPS)?;
+        self.follow(&mut followed, TUNING.steps_of_climb)?;
         self.start_elsewhere(&mut followed)?;
         self.note_measured(&followed)?;
-        for some in between.chunks(AT_ONCE / 2) {
+        for some in between.chunks(TUNING.kernels_at_once / 2) {
             self.learn(some, &followed)?;
         }
         Ok(())
@@ -174,7 +153,7 @@ impl Search<'_, '_> {
     /// Climbs once more from the best functions of the ends around, as they are and moved by the time between, from the
     /// opposite function and from the two constants. More than once, since neighbours learn from one another.
     fn start_elsewhere(&mut self, climbs: &mut [Climb]) -> Result<(), SimulationError> {
-        for round in 0..ROUNDS {
+        for round in 0..TUNING.rounds {
             let (mut numbers, mut others) = (Vec::new(), Vec::new());
             for (number, climb) in climbs.iter().enumerate() {
                 let around = [number.checked_sub(1), Some(number + 1)].into_iter().flatten();
@@ -196,7 +175,7 @@ impl Search<'_, '_> {
                 numbers.extend(starts.iter().map(|_| number));
                 others.extend(starts);
             }
-            self.follow(&mut others, STEPS)?;
+            self.follow(&mut others, TUNING.steps_of_climb)?;
             climbs.iter_mut().for_each(|climb| climb.improved = 0.0);
             numbers.into_iter().zip(others).for_each(|(number, other)| climbs[number].learn(other));
         }
@@ -234,7 +213,7 @@ impl Search<'_, '_> {
                 climbs.extend(starts);
             }
         }
-        self.follow(&mut climbs, LEARNT)?;
+        self.follow(&mut climbs, TUNING.steps_of_learnt)?;
         let mut best: Vec<Option<Climb>> = some.iter().map(|_| None).collect();
         for (number, climb) in numbers.into_iter().zip(climbs) {
             if best[number].as_ref().is_none_or(|known| climb.reached() > known.reached()) {
@@ -268,8 +247,9 @@ impl Search<'_, '_> {
         for (climb, halved) in known.into_iter().zip(halved) {
             self.note(climb);
             let direct = climb.sign * climb.reached();
-            let error = if jumps { FIRST_ORDER * (halved - direct).abs() } else { step_error(&[direct], &[halved]) };
-            self.found.note_steps(climb.row, climb.output, SAFETY * error);
+            let error =
+                if jumps { TUNING.first_order * (halved - direct).abs() } else { step_error(&[direct], &[halved]) };
+            self.found.note_steps(climb.row, climb.output, SAFETY_OF_STEPS * error);
         }
         Ok(())
     }

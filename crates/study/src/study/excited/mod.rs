@@ -13,6 +13,7 @@ mod limits;
 mod motions;
 mod point;
 mod switches;
+pub(crate) mod tuning;
 mod values;
 
 use super::RunError;

@@ -7,11 +7,9 @@
 use super::climb::Climb;
 use super::motions::{ExcitedMotions, functional, in_row};
 use super::point::Point;
+use super::tuning::TUNING;
 use crate::simulate::{Gradient, SimulationError};
 use crate::study::bounding::{FunctionEnd, FunctionEnds, WorstFunction};
-
-/// Iterations of Newton's method: each squares the error.
-const ROUNDS: usize = 3;
 
 /// Settles the switches of the functions under which each output is least, greatest and furthest.
 ///
@@ -48,7 +46,7 @@ fn settled(
     let mut ends = own.ends.clone();
     let mut found: Option<(WorstFunction, FunctionEnd)> = None;
     let mut gradient = motions.gradients(&[(&point, in_row(own.row, output))])?.swap_remove(0);
-    for _ in 0..ROUNDS {
+    for _ in 0..TUNING.newton_rounds {
         let times = switches(motions, &gradient, &ends, &point, sign);
         let mut finer = motions.ending_at_times(&times);
         if times.is_empty() || finer.ends.len() == motions.ends.len() {

@@ -5,12 +5,12 @@
 //! its source in the rows: these say how much is open.
 
 use super::climb::Climb;
-use super::ends::{FIRST_ORDER, SAFETY, STEPS};
 use super::motions::{Asked, ExcitedMotions};
 use super::point::Point;
+use super::tuning::TUNING;
 use crate::assemble::NumberFormulas;
 use crate::model::ReducedKind;
-use crate::numerics::{largest, step_error};
+use crate::numerics::{SAFETY_OF_STEPS, largest, step_error};
 use crate::simulate::{Gradient, SimulationError, Term};
 use crate::study::bounding::{FunctionEnd, FunctionEnds};
 use crate::study::gradient::{InRows, in_rows};
@@ -109,7 +109,7 @@ impl Values<'_, '_, '_> {
                 climbs.extend(starts.iter().filter(|start| start.of.is_none_or(|of| own.contains(&of))).map(climb));
             }
         }
-        for _ in 0..STEPS {
+        for _ in 0..TUNING.steps_of_climb {
             if !self.step(&mut climbs)? {
                 break;
             }
@@ -309,11 +309,11 @@ impl Values<'_, '_, '_> {
         };
         let [halved, in_fewer] = [at(2, 1)?, at(1, 2)?];
         let error = if self.motions.jumps() {
-            FIRST_ORDER * (halved - reached).abs()
+            TUNING.first_order * (halved - reached).abs()
         } else {
             step_error(&[*reached], &[halved])
         };
-        found.note_steps(0, index, SAFETY * error + (in_fewer - reached).abs());
+        found.note_steps(0, index, SAFETY_OF_STEPS * error + (in_fewer - reached).abs());
         Ok(())
     }
 }

@@ -5,17 +5,12 @@ use crate::study::prepared::{Prepared, prepare, questions};
 use crate::study::stepping::decision;
 use symdiff::{Formula, Input, lower};
 
+use super::tuning::TUNING;
 use crate::assemble::Questions;
 use crate::compile::Tapes;
 use crate::model::{Description, Output, ParameterValue};
 use crate::reduce::{Choices, Reduction};
 use crate::results::{Decision, Each, Saving};
-
-/// Instructions a step up to which a model is compiled again to count the saving.
-const COUNTED: usize = 30_000;
-
-/// Names told of many.
-const NAMED: usize = 8;
 
 /// Names of the uncertain parameters.
 pub fn uncertain(description: &Description) -> Vec<String> {
@@ -25,7 +20,7 @@ pub fn uncertain(description: &Description) -> Vec<String> {
 /// All decisions about a model.
 pub fn decisions(description: &Description, reduction: &Reduction, prepared: &[Prepared]) -> Vec<Decision> {
     let step: usize = prepared.iter().map(|one| instructions(&one.simulator)).sum();
-    let affordable = step <= COUNTED;
+    let affordable = step <= TUNING.counted;
     let default = Choices::default();
     let mut found = Vec::new();
     if !reduction.left_out.is_empty() {
@@ -64,8 +59,9 @@ fn parts(count: usize) -> String {
 }
 
 fn named(names: &[String]) -> String {
-    let more = if names.len() > NAMED { format!(" and {} more", names.len() - NAMED) } else { String::new() };
-    format!("{}{more}", names[..names.len().min(NAMED)].join(", "))
+    let more =
+        if names.len() > TUNING.named { format!(" and {} more", names.len() - TUNING.named) } else { String::new() };
+    format!("{}{more}", names[..names.len().min(TUNING.named)].join(", "))
 }
 
 /// What a step takes more with other choices.

@@ -4,14 +4,12 @@ use crate::study::formulation::{as_chosen, compiled};
 use crate::study::{RunError, prepare_whole};
 use rayon::prelude::*;
 
+use super::tuning::TUNING;
 use crate::assemble::Questions;
 use crate::compile::Program;
 use crate::model::{Description, EffectKind, Output, load_str};
 use crate::results::{EffectCost, StepInstructions};
 use crate::simulate::Simulator;
-
-/// A model is compiled once more for each of its effects as long as that makes no more instructions than this.
-const MOST_INSTRUCTIONS: usize = 3_000_000;
 
 /// The mechanism in which effects are compared. Every number is deterministic, so the counts depend on the motion.
 const MECHANISM: &str = "
@@ -60,7 +58,7 @@ pub fn effect_costs(questions: &Questions, simulator: &Simulator) -> Vec<Option<
     let all = step_instructions(&simulator.program, true);
     let instructions = (all.step + all.factor + all.iteration).unsigned_abs() as usize;
     let effects = 0..description.effects.len();
-    if instructions * effects.len() > MOST_INSTRUCTIONS {
+    if instructions * effects.len() > TUNING.most_instructions {
         return vec![None; effects.len()];
     }
     let cost = |effect: usize| {

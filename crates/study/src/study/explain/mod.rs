@@ -2,6 +2,7 @@
 
 mod decisions;
 mod effect_costs;
+pub(crate) mod tuning;
 
 use super::black_box::needs_mechanism;
 use super::prepared::{Prepared, prepare, questions};
@@ -17,9 +18,7 @@ use crate::simulate::Simulator;
 use decisions::{decisions, uncertain};
 use effect_costs::effect_costs;
 pub use effect_costs::language_costs;
-
-/// Most joints that are listed.
-const MOST_NAMED: usize = 8;
+use tuning::TUNING;
 
 /// What a model is compiled to, and why it is no more than that.
 ///
@@ -67,7 +66,7 @@ fn formulation(description: &Description, simulator: &Simulator) -> String {
     let cut: Vec<String> = info.cut.iter().map(|&joint| format!("`{}`", description.joints[joint].name)).collect();
     let cut = match cut.len() {
         0 => String::new(),
-        1..=MOST_NAMED => format!("; loops are cut at {}", cut.join(", ")),
+        count if count <= TUNING.most_named => format!("; loops are cut at {}", cut.join(", ")),
         count => format!("; loops are cut at {count} joints"),
     };
     format!("{} coordinates: {}{cut}", info.name(), info.why)

@@ -2,38 +2,13 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::local::{COARSE, Frame, Local};
+use super::local::{Frame, Local};
 use super::readings::{Finer, Run};
+use super::tuning::TUNING;
 use super::{FitError, Measurements};
 use crate::model::Description;
 use crate::numerics::{ParameterBox, spread};
 use crate::study::Options;
-
-/// Starts in the box, beside its middle.
-const STARTS: usize = 8;
-
-/// Steps from each start, and of simulations.
-const STEPS: usize = 40;
-pub const POLISHING: usize = 4;
-
-/// Boxes around the estimate.
-const BOXES: usize = 10;
-/// The next box, where the surrogate's error is more than this share of the noise.
-const ROUGH: f64 = 0.05;
-const NEXT: f64 = 0.35;
-/// A smaller error than this share of the last one is worth another box.
-const BETTER: f64 = 0.7;
-/// An estimate beyond this share of a box may lie outside of it.
-const EDGE: f64 = 0.95;
-
-/// Half of a difference quotient's step in η: polynomials are smooth.
-const DIFFERENCE: f64 = 1e-4;
-
-/// A step that is shorter than this share of the estimate's deviation, or of the box, ends the search.
-const SHORT: f64 = 1e-3;
-
-/// Smallest eigenvalue of JᵀJ, relative to the largest, below which a direction is not determined.
-const SINGULAR: f64 = 1e-13;
 
 /// Noise is within its bound: the standard deviation of a uniform law.
 pub const DEVIATION: f64 = 0.577_350_269_189_625_8;
@@ -76,24 +51,24 @@ pub fn minimum(
     let k = prior.dimension();
     let (mut frame, mut simulations, mut before) = (first, 0, f64::INFINITY);
     let mut best: Option<Minimum> = None;
-    for round in 0..BOXES {
+    for round in 0..TUNING.boxes {
         let run = Run::new(description, &frame.domain(prior), Finer::default(), options)?;
         simulations += run.simulations;
-        let local = Local::new(&run.readings(measurements)?, &frame, prior, measurements, COARSE)?;
-        let starts = if round == 0 { STARTS } else { 0 };
+        let local = Local::new(&run.readings(measurements)?, &frame, prior, measurements, TUNING.coarse)?;
+        let starts = if round == 0 { TUNING.starts } else { 0 };
         let eta = minimised(&local, measurements, k, starts);
         let roughness = local.roughness(measurements);
         let ends: Vec<[f64; 2]> = (0..k).map(|axis| frame.ends(axis)).collect();
         let is_at_edge = (0..k).any(|axis| {
             let is_inside = [ends[axis][0] > -1.0, ends[axis][1] < 1.0];
-            (eta[axis] < -EDGE && is_inside[0]) || (eta[axis] > EDGE && is_inside[1])
+            (eta[axis] < -TUNING.edge && is_inside[0]) || (eta[axis] > TUNING.edge && is_inside[1])
         });
         let xi = frame.xi(&eta);
-        let scale = if is_at_edge { 1.0 } else { NEXT };
+        let scale = if is_at_edge { 1.0 } else { TUNING.next_box };
         let halves: Vec<f64> = ends.iter().map(|[lower, upper]| scale * 0.5 * (upper - lower)).collect();
         let next = Frame::around(&xi, &halves);
         best = Some(Minimum { frame: std::mem::replace(&mut frame, next), local, eta, simulations });
-        if !is_at_edge && (roughness <= ROUGH || roughness > BETTER * before) {
+        if !is_at_edge && (roughness <= TUNING.rough || roughness > TUNING.better * before) {
             break;
         }
         before = if is_at_edge { f64::INFINITY } else { roughness };
@@ -107,7 +82,7 @@ pub fn linearised(local: &Local, measurements: &Measurements, eta: &[f64]) -> Li
     for axis in 0..eta.len() {
         for sign in [1.0, -1.0] {
             let mut moved = eta.to_vec();
-            moved[axis] += sign * DIFFERENCE;
+            moved[axis] += sign * TUNING.step_of_difference;
             points.push(moved);
         }
     }
@@ -117,7 +92,7 @@ pub fn linearised(local: &Local, measurements: &Measurements, eta: &[f64]) -> Li
     let residual = |index: usize, _| (of(index, 0) - row(index).value) / (DEVIATION * row(index).noise);
     let derivative = |index: usize, axis: usize| {
         let difference = of(index, 1 + 2 * axis) - of(index, 2 + 2 * axis);
-        difference / (2.0 * DIFFERENCE * DEVIATION * row(index).noise)
+        difference / (2.0 * TUNING.step_of_difference * DEVIATION * row(index).noise)
     };
     Linearised {
         residuals: DVector::from_fn(local.rows.len(), residual),
@@ -130,7 +105,7 @@ impl Linearised {
     pub fn step(&self, eta: &[f64], damping: f64) -> Vec<f64> {
         let mut normal = self.jacobian.tr_mul(&self.jacobian);
         let most = normal.diagonal().max().max(f64::MIN_POSITIVE);
-        (0..eta.len()).for_each(|axis| normal[(axis, axis)] += damping * normal[(axis, axis)] + SINGULAR * most);
+        (0..eta.len()).for_each(|axis| normal[(axis, axis)] += damping * normal[(axis, axis)] + TUNING.singular * most);
         let gradient = self.jacobian.tr_mul(&self.residuals);
         let step = normal.cholesky().map_or_else(|| DVector::zeros(eta.len()), |factor| factor.solve(&gradient));
         eta.iter().zip(step.iter()).map(|(eta, step)| (eta - step).clamp(-1.0, 1.0)).collect()
@@ -141,7 +116,7 @@ impl Linearised {
         let k = self.jacobian.ncols();
         let eigen = self.jacobian.tr_mul(&self.jacobian).symmetric_eigen();
         let most = eigen.eigenvalues.max();
-        let is_known = |index: usize| eigen.eigenvalues[index] > SINGULAR * most;
+        let is_known = |index: usize| eigen.eigenvalues[index] > TUNING.singular * most;
         let mut covariance = DMatrix::zeros(k, k);
         for index in (0..k).filter(|&index| is_known(index)) {
             let axis = eigen.eigenvectors.column(index);
@@ -164,7 +139,10 @@ impl Linearised {
 
 /// Whether a step from one point to another is short.
 pub fn is_short(from: &[f64], to: &[f64], deviations: &[f64]) -> bool {
-    from.iter().zip(to).zip(deviations).all(|((from, to), deviation)| (to - from).abs() <= SHORT * deviation.min(1.0))
+    from.iter()
+        .zip(to)
+        .zip(deviations)
+        .all(|((from, to), deviation)| (to - from).abs() <= TUNING.short_step * deviation.min(1.0))
 }
 
 /// The least of several minima on the surrogate, η.
@@ -179,7 +157,7 @@ fn minimised(local: &Local, measurements: &Measurements, k: usize, starts: usize
 fn descended(local: &Local, measurements: &Measurements, start: Vec<f64>) -> (f64, Vec<f64>) {
     let (mut eta, mut damping) = (start, 1e-3);
     let mut here = linearised(local, measurements, &eta);
-    for _ in 0..STEPS {
+    for _ in 0..TUNING.steps {
         let next = here.step(&eta, damping);
         let there = linearised(local, measurements, &next);
         if there.residuals.norm_squared() < here.residuals.norm_squared() {

@@ -3,32 +3,12 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::readings::{Readings, Values};
+use super::tuning::TUNING;
 use super::{FitError, Measurements};
 use crate::numerics::{
     Design, ParameterBox, SAFETY_OF_SURROGATE, SparseBasis, SparseWork, Surrogate, SurrogateWork, Tubes, corners,
     largest,
 };
-
-/// Most nodes of a polynomial.
-const MOST_NODES: usize = 4096;
-
-/// Highest degree along an axis.
-const MOST_DEGREE: usize = 14;
-
-/// Shares of the noise by which a polynomial may differ from the surrogate: to approach a set, and at its end, since
-/// many rows leave a small share of the noise.
-pub const COARSE: f64 = 1e-3;
-pub const FINE: f64 = 1e-5;
-
-/// A polynomial that differs by less than this share of the error that values have anyway is fine enough, too.
-const OF_ERROR: f64 = 0.2;
-
-/// Points at which a polynomial is compared with the surrogate, by axis, and corners beside.
-const POINTS: usize = 32;
-const CORNERS: usize = 64;
-
-/// Rounding of values, as a share of the noise.
-const ROUNDING: f64 = 1e-9;
 
 /// Skew axes: ξ = center + axes · η, η ∈ [−1, 1]^k, in multiples of the half intervals of the model's box.
 #[derive(Clone, Debug)]
@@ -119,14 +99,14 @@ impl Local {
         let k = prior.dimension();
         let own = readings.errors();
         let sample = |eta: &Vec<f64>| values(prior, &frame.xi(eta));
-        let mut held_out = Design::Sobol.points(k, POINTS * k, 0..POINTS * k);
+        let mut held_out = Design::Sobol.points(k, TUNING.points_an_axis * k, 0..TUNING.points_an_axis * k);
         held_out.iter_mut().flatten().for_each(|u| *u = 2.0 * *u - 1.0);
-        held_out.extend(corners(k, CORNERS));
+        held_out.extend(corners(k, TUNING.corners));
         let samples: Vec<Vec<f64>> = held_out.iter().map(sample).collect();
         let direct = readings.at(&samples);
         let mut best: Option<(f64, Self)> = None;
-        for degree in 1..=MOST_DEGREE {
-            if (degree + 1_usize).checked_pow(k as u32).is_none_or(|nodes| nodes > MOST_NODES) {
+        for degree in 1..=TUNING.most_degree {
+            if (degree + 1_usize).checked_pow(k as u32).is_none_or(|nodes| nodes > TUNING.most_nodes) {
                 break;
             }
             let surrogate = Surrogate::tensor(&vec![degree; k], &vec![degree + 1; k]);
@@ -135,7 +115,7 @@ impl Local {
             let Self { errors: between, .. } = &found;
             let shares = between.iter().zip(&measurements.values).zip(&own);
             let shares = shares.filter(|(_, own)| own.is_finite());
-            let shares = shares.map(|((error, row), own)| error / row.noise.max(OF_ERROR / fine * own));
+            let shares = shares.map(|((error, row), own)| error / row.noise.max(TUNING.fine_beside_error / fine * own));
             let coarseness =
                 shares.fold(0.0, |most: f64, own| if own.is_nan() { f64::INFINITY } else { most.max(own) });
             if best.as_ref().is_none_or(|best| coarseness < best.0) {
@@ -178,7 +158,7 @@ impl Local {
         self.rows.clear();
         for (row, measured) in measurements.values.iter().enumerate() {
             self.errors[row] = if own[row].is_finite() { self.errors[row] + own[row] } else { f64::INFINITY };
-            let error = self.errors[row] + ROUNDING * measured.noise;
+            let error = self.errors[row] + TUNING.rounding * measured.noise;
             if error.is_finite() {
                 self.rows.push(row);
                 coefficients.extend_from_slice(&self.tubes.coefficients[row * size..][..size]);
@@ -194,7 +174,7 @@ impl Local {
             linear[0] = frame.center[axis];
             strides.iter().enumerate().for_each(|(of, &stride)| linear[stride] = frame.axes[(axis, of)]);
             coefficients.extend(linear);
-            self.tubes.outer.push([-1.0 - ROUNDING, 1.0 + ROUNDING]);
+            self.tubes.outer.push([-1.0 - TUNING.rounding, 1.0 + TUNING.rounding]);
             self.tubes.inner.push([-1.0, 1.0]);
             self.tubes.scales.push(1.0);
         }

@@ -12,13 +12,14 @@ mod local;
 mod projections;
 mod readings;
 mod set;
+pub(crate) mod tuning;
 mod unexplained;
 
 pub use data::{DataError, Measurements, NoiseBound};
 
 use crate::numerics::Interpolation;
-use least_squares::{DEVIATION, Minimum, POLISHING, is_short, linearised, minimum};
-use local::{COARSE, Frame, Local, values};
+use least_squares::{DEVIATION, Minimum, is_short, linearised, minimum};
+use local::{Frame, Local, values};
 use readings::{Finer, Run};
 use set::Set;
 use unexplained::unexplained;
@@ -28,9 +29,7 @@ use crate::model::Description;
 use crate::numerics::{ParameterBox, Sample};
 use crate::results::{Fit, FitOutput, FitParameter, FitRow};
 use crate::syntax::{Code, Coded};
-
-/// Extent of the box in which least squares begin, in multiples of the consistent set's.
-const AROUND: f64 = 4.0;
+use tuning::TUNING;
 
 /// Why there is no fit.
 #[derive(Debug, thiserror::Error)]
@@ -90,7 +89,7 @@ fn fitted(model: &Description, measurements: &Measurements, options: &Options) -
     let contradiction = if is_empty {
         (options.stage)("rows without an explanation");
         let readings = run.readings(measurements)?.strict(true);
-        let whole = Local::new(&readings, &Frame::whole(k), &prior, measurements, COARSE)?;
+        let whole = Local::new(&readings, &Frame::whole(k), &prior, measurements, TUNING.coarse)?;
         Some(unexplained(&whole, &minimum.local, measurements, options.interrupted))
     } else {
         None
@@ -133,7 +132,7 @@ fn fitted(model: &Description, measurements: &Measurements, options: &Options) -
 fn around(hull: Option<&[[f64; 2]]>, k: usize) -> Frame {
     let Some(hull) = hull else { return Frame::whole(k) };
     let middle: Vec<f64> = hull.iter().map(|[lower, upper]| 0.5 * (lower + upper)).collect();
-    let halves: Vec<f64> = hull.iter().map(|[lower, upper]| 0.5 * AROUND * (upper - lower)).collect();
+    let halves: Vec<f64> = hull.iter().map(|[lower, upper]| 0.5 * TUNING.around * (upper - lower)).collect();
     Frame::around(&middle, &halves)
 }
 
@@ -191,7 +190,7 @@ fn polished(
         Ok(Estimate { eta, fitted, residual: (squares / known.len().max(1) as f64).sqrt() })
     };
     let mut best = simulated(eta.clone())?;
-    for _ in 0..POLISHING {
+    for _ in 0..TUNING.polishing_steps {
         let mut here = linearised(local, measurements, &best.eta);
         for (residual, &row) in here.residuals.iter_mut().zip(&local.rows) {
             let measured = &measurements.values[row];

@@ -1,11 +1,9 @@
 //! Shadows of the consistent set on pairs of parameters, as rows of a raster.
 
 use super::local::{Frame, value};
+use super::tuning::TUNING;
 use crate::numerics::{Boxes, ParameterBox, Paving};
 use crate::results::FitProjection;
-
-/// Cells of the raster along either parameter.
-const CELLS: usize = 160;
 
 /// The raster over the outer hull of two parameters.
 struct Raster {
@@ -68,15 +66,15 @@ fn shadow(frame: &Frame, pair: [usize; 2], lower: &[f64], upper: &[f64]) -> Vec<
 
 impl Raster {
     fn over(hull: [[f64; 2]; 2]) -> Self {
-        let size = hull.map(|[lower, upper]| ((upper - lower) / CELLS as f64).max(f64::MIN_POSITIVE));
-        Self { lower: hull.map(|own| own[0]), size, cells: vec![false; CELLS * CELLS] }
+        let size = hull.map(|[lower, upper]| ((upper - lower) / TUNING.cells as f64).max(f64::MIN_POSITIVE));
+        Self { lower: hull.map(|own| own[0]), size, cells: vec![false; TUNING.cells * TUNING.cells] }
     }
 
     /// Cells that a convex polygon meets, or those of which it has the middle.
     fn fill(&mut self, corners: &[[f64; 2]], middles: bool) {
         let rows = corners.iter().map(|corner| (corner[1] - self.lower[1]) / self.size[1]);
         let [least, most] = rows.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], own| [a.min(own), b.max(own)]);
-        let clamped = |row: f64| (row.max(0.0) as usize).min(CELLS - 1);
+        let clamped = |row: f64| (row.max(0.0) as usize).min(TUNING.cells - 1);
         for row in clamped(least.floor())..=clamped(most.ceil()) {
             let begin = self.lower[1] + row as f64 * self.size[1];
             let strip = if middles { [begin + 0.5 * self.size[1]; 2] } else { [begin, begin + self.size[1]] };
@@ -86,18 +84,18 @@ impl Raster {
                 true => [(from - 0.5).ceil(), (to - 0.5).floor() + 1.0],
                 false => [from.floor(), to.floor() + 1.0],
             };
-            let cells = (first.max(0.0) as usize)..(end.max(0.0) as usize).min(CELLS);
-            cells.for_each(|column| self.cells[row * CELLS + column] = true);
+            let cells = (first.max(0.0) as usize)..(end.max(0.0) as usize).min(TUNING.cells);
+            cells.for_each(|column| self.cells[row * TUNING.cells + column] = true);
         }
     }
 
     /// Runs of cells, row by row: ends of the first, then of the second parameter.
     fn rectangles(&self) -> Vec<[f64; 4]> {
         let mut rectangles = Vec::new();
-        for (row, cells) in self.cells.chunks_exact(CELLS).enumerate() {
+        for (row, cells) in self.cells.chunks_exact(TUNING.cells).enumerate() {
             let at = |side: usize, cell: usize| self.lower[side] + cell as f64 * self.size[side];
             let mut column = 0;
-            while column < CELLS {
+            while column < TUNING.cells {
                 let end = column + cells[column..].iter().take_while(|own| **own).count();
                 if end > column {
                     rectangles.push([at(0, column), at(0, end), at(1, row), at(1, row + 1)]);
@@ -144,10 +142,13 @@ mod tests {
         let inner = raster.cells.iter().filter(|own| **own).count();
         raster.fill(&triangle, false);
         let outer = raster.cells.iter().filter(|own| **own).count();
-        let half = CELLS * CELLS / 2;
-        assert!(inner <= half + CELLS / 2 && outer >= half && outer - inner <= 3 * CELLS, "{inner} {outer}");
+        let half = TUNING.cells * TUNING.cells / 2;
+        assert!(
+            inner <= half + TUNING.cells / 2 && outer >= half && outer - inner <= 3 * TUNING.cells,
+            "{inner} {outer}"
+        );
         let area = |[a, b, c, d]: [f64; 4]| (b - a) * (d - c);
         let whole: f64 = raster.rectangles().into_iter().map(area).sum();
-        assert!((whole - outer as f64 / (CELLS * CELLS) as f64).abs() < 1e-12);
+        assert!((whole - outer as f64 / (TUNING.cells * TUNING.cells) as f64).abs() < 1e-12);
     }
 }

@@ -2,9 +2,10 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::local::{COARSE, FINE, Frame, Local};
+use super::local::{Frame, Local};
 use super::projections::projections;
 use super::readings::{Finer, Run};
+use super::tuning::TUNING;
 use super::{FitError, Measurements};
 use crate::model::Description;
 use crate::numerics::{ParameterBox, Paving, PavingLimits, pave};
@@ -15,24 +16,6 @@ use crate::study::Options;
 const APPROACH: PavingLimits = PavingLimits { undecided: 0.3, boxes: 1 << 12, numbers: 1 << 23 };
 /// The last one.
 const LAST: PavingLimits = PavingLimits { undecided: 0.02, boxes: 1 << 18, numbers: 1 << 25 };
-
-/// Axes that fit the set no better than this share of their volume are the last.
-const SHRUNK: f64 = 0.6;
-const ROUNDS: usize = 24;
-
-/// Measured values that are used at first.
-const FEW: usize = 40;
-
-/// Surrogates are made anew where their error is more than this share of the noise.
-const ROUGH: f64 = 3e-4;
-/// New ones with less than this share of the error are worth it, and so many of them.
-const BETTER: f64 = 0.7;
-const RUNS: usize = 8;
-/// Times that an order is raised, or steps are halved.
-const RAISED: usize = 3;
-
-/// Volumes of the last pavings may differ by this share of the outer one before simulations are refined.
-const APART: f64 = 0.03;
 
 /// The end of the approach.
 pub struct Found {
@@ -74,13 +57,13 @@ pub fn found(
 }
 
 fn approached(mut approach: Approach, measurements: &Measurements, has_flagged: &mut bool) -> Result<Found, FitError> {
-    let few = measurements.thinned(FEW);
+    let few = measurements.thinned(TUNING.first_values);
     let mut used = &few;
     let options = approach.options;
-    for _ in 0..ROUNDS {
+    for _ in 0..TUNING.rounds {
         (options.stage)("consistent parameters");
         *has_flagged |= approach.run().readings(used)?.has_flagged();
-        let local = approach.local(used, COARSE)?;
+        let local = approach.local(used, TUNING.coarse)?;
         let paving = pave(&local.tubes, APPROACH, options.interrupted);
         if (options.interrupted)() {
             return Err(FitError::Interrupted);
@@ -89,7 +72,7 @@ fn approached(mut approach: Approach, measurements: &Measurements, has_flagged: 
             return Ok(Found { set: None, simulations: approach.simulations, errors: None });
         }
         let next = fitted(&approach.frame, &paving);
-        let shrinks = volume(&next) < SHRUNK * volume(&approach.frame);
+        let shrinks = volume(&next) < TUNING.shrunk * volume(&approach.frame);
         if shrinks {
             approach.frame = next;
         }
@@ -103,7 +86,7 @@ fn approached(mut approach: Approach, measurements: &Measurements, has_flagged: 
         used = measurements;
     }
     let (mut local, mut paving) = approach.last(measurements)?;
-    while apart(&paving) > APART && approach.refined()? {
+    while apart(&paving) > TUNING.volumes_apart && approach.refined()? {
         (local, paving) = approach.last(measurements)?;
     }
     let is_empty = paving.volumes()[1] == 0.0;
@@ -159,13 +142,13 @@ impl<'a> Approach<'a> {
     fn improved(&mut self, roughness: f64, shrinks: bool, is_all: bool) -> Result<bool, FitError> {
         let domain = self.frame.domain(self.prior);
         let is_narrower = is_narrower(&domain, &self.run().domain);
-        if roughness <= ROUGH || self.runs == RUNS || (shrinks && !is_narrower) {
+        if roughness <= TUNING.rough_surrogate || self.runs == TUNING.most_runs || (shrinks && !is_narrower) {
             return Ok(false);
         }
         if !is_narrower {
             // The last run was of no use, or the box cannot be made smaller.
-            let is_worth_it = is_all && roughness <= BETTER * self.before && self.run().is_rough();
-            if !is_worth_it || self.finer.orders == RAISED {
+            let is_worth_it = is_all && roughness <= TUNING.better_surrogate * self.before && self.run().is_rough();
+            if !is_worth_it || self.finer.orders == TUNING.raised {
                 return Ok(false);
             }
             self.finer.orders += 1;
@@ -178,7 +161,7 @@ impl<'a> Approach<'a> {
     /// steps. Returns whether there is one.
     fn refined(&mut self) -> Result<bool, FitError> {
         let finer = if self.run().is_rough() { &mut self.finer.orders } else { &mut self.finer.steps };
-        if *finer == RAISED || self.runs == RUNS {
+        if *finer == TUNING.raised || self.runs == TUNING.most_runs {
             return Ok(false);
         }
         *finer += 1;
@@ -187,7 +170,7 @@ impl<'a> Approach<'a> {
 
     /// The last paving with the polynomials that it is of.
     fn last(&self, measurements: &Measurements) -> Result<(Local, Paving), FitError> {
-        let local = self.local(measurements, FINE)?;
+        let local = self.local(measurements, TUNING.fine)?;
         let paving = pave(&local.tubes, LAST, self.options.interrupted);
         if (self.options.interrupted)() { Err(FitError::Interrupted) } else { Ok((local, paving)) }
     }
@@ -203,7 +186,7 @@ impl<'a> Approach<'a> {
             }
             // All that is known so far remains true.
             Err(FitError::NoSurrogate) => {
-                self.runs = RUNS;
+                self.runs = TUNING.most_runs;
                 Ok(false)
             }
             Err(error) => Err(error),
@@ -213,7 +196,7 @@ impl<'a> Approach<'a> {
 
 /// Whether a box is much narrower than another along some axis.
 fn is_narrower(domain: &ParameterBox, than: &ParameterBox) -> bool {
-    (0..domain.dimension()).any(|axis| domain.half_width(axis) < SHRUNK * than.half_width(axis))
+    (0..domain.dimension()).any(|axis| domain.half_width(axis) < TUNING.shrunk * than.half_width(axis))
 }
 
 fn volume(frame: &Frame) -> f64 {

@@ -2,17 +2,9 @@
 
 use super::Measurements;
 use super::local::Local;
+use super::tuning::TUNING;
 use crate::numerics::{LeastExcess, Tubes, least_excess};
 use crate::results::Unexplained;
-
-/// Tolerance of the noise's factor, and boxes that are examined for it.
-const TOLERANCE: f64 = 0.01;
-const BOXES: usize = 4000;
-
-/// Rows that are as bad as the worst at the best parameters, up to this share.
-const ALIKE: f64 = 0.05;
-/// Rows that are left out, one at a time.
-const MOST: usize = 6;
 
 /// Compares single rows with polynomials over the model's box, `whole`, and all together with those about the least
 /// squares.
@@ -22,7 +14,7 @@ pub fn unexplained(
     measurements: &Measurements,
     interrupted: &(dyn Fn() -> bool + Sync),
 ) -> Unexplained {
-    let excess = |tubes: &Tubes| least_excess(tubes, TOLERANCE, BOXES, interrupted);
+    let excess = |tubes: &Tubes| least_excess(tubes, TUNING.tolerance_of_factor, TUNING.boxes_of_factor, interrupted);
     let mut alone: Vec<(usize, f64)> = Vec::new();
     for (index, &row) in whole.rows.iter().enumerate() {
         let own = excess(&only(&whole.tubes, index)).lower;
@@ -66,9 +58,9 @@ fn suspects(local: &Local, measurements: &Measurements, best: &LeastExcess) -> V
     };
     let most = (0..local.rows.len()).map(excess).fold(0.0, f64::max);
     let mut suspects: Vec<usize> =
-        (0..local.rows.len()).filter(|&index| excess(index) >= (1.0 - ALIKE) * most).collect();
+        (0..local.rows.len()).filter(|&index| excess(index) >= (1.0 - TUNING.as_bad) * most).collect();
     suspects.sort_by(|a, b| excess(*b).total_cmp(&excess(*a)));
-    suspects.truncate(MOST);
+    suspects.truncate(TUNING.left_out_rows);
     suspects
 }
 

@@ -1,6 +1,6 @@
 //! Constants of the room `formulation`.
 
-use crate::syntax::tuning::tuning;
+use symdiff::constants::tuning;
 
 tuning! {
     /// The choice of coordinates.

@@ -1,10 +1,8 @@
 //! An output over the time, as its rows have it: between them it is the cubic through the four nearest.
 
+use super::tuning::TUNING;
 use crate::numerics::{bisected, row_weights};
 use crate::simulate::Term;
-
-/// Halvings of an interval in which a zero is looked for, and golden sections of one with an extreme.
-const HALVINGS: usize = 60;
 
 /// A course over the rows; scaled by a sign.
 #[derive(Clone, Copy)]
@@ -66,7 +64,7 @@ impl Curve<'_> {
             .unwrap_or(from);
         let (mut low, mut high) = ((best - self.spacing()).max(from), (best + self.spacing()).min(to));
         let share = 0.5 * (5.0_f64.sqrt() - 1.0);
-        for _ in 0..HALVINGS {
+        for _ in 0..TUNING.halvings {
             let [left, right] = [high - share * (high - low), low + share * (high - low)];
             if self.value(left) < self.value(right) { low = left } else { high = right }
         }
@@ -82,7 +80,7 @@ impl Curve<'_> {
         let mut pairs = instants.windows(2).filter(|pair| is_met(pair[0]) != is_met(pair[1]));
         let zero = |pair: &[f64]| {
             let begins = is_met(pair[0]);
-            bisected(pair[0], pair[1], HALVINGS, |time| is_met(time) != begins)
+            bisected(pair[0], pair[1], TUNING.halvings, |time| is_met(time) != begins)
         };
         let first = pairs.next();
         let last = pairs.next_back().or(first);

@@ -4,6 +4,7 @@
 mod curve;
 mod nominal;
 mod reduced;
+pub(crate) mod tuning;
 
 pub(super) use self::nominal::along_nominal;
 pub(super) use self::reduced::{InRows, accumulated_in_rows, in_rows};

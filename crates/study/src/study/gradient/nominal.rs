@@ -4,18 +4,12 @@
 use symdiff::jet::JetSpace;
 
 use super::GradientError;
+use super::tuning::TUNING;
 use crate::numerics::Sample;
 use crate::simulate::{Integration, JetBox, Schedule, SimulationError, Steps, Wanted, gradients, switched_from};
 use crate::study::ensemble::{Progress, jet_about};
 use crate::study::problem::Study;
 use crate::study::stepping::{StepPlan, segmented_nominal};
-
-/// Simulations that a gradient of one output in one row costs in lanes. Forwards, the derivatives by one parameter of
-/// all outputs in all rows cost about one.
-const BACKWARDS: f64 = 0.5;
-
-/// Gradients with two kinds of steps agree to this share of the largest influence.
-const AGREEMENT: f64 = 0.01;
 
 /// An output's value in a row of the nominal motion, and its derivatives.
 #[derive(Clone, Debug)]
@@ -57,7 +51,7 @@ pub fn along_nominal(study: &Study, plan: &StepPlan, outputs: &[usize]) -> Resul
 /// Derivatives under a schedule.
 fn followed(study: &Study, schedule: &Schedule, outputs: &[usize]) -> Result<Vec<AtRow>, GradientError> {
     let parameters = study.domain.dimension() as f64;
-    let backwards = BACKWARDS * (schedule.rows * outputs.len()) as f64;
+    let backwards = TUNING.backwards * (schedule.rows * outputs.len()) as f64;
     let is_jet = schedule.integration != Integration::Segments && !study.simulator.system.analysis.visits();
     if is_jet && parameters < backwards {
         // Where jets stop or are no numbers, adjoints may go on.
@@ -129,7 +123,9 @@ fn differs_from(study: &Study, outputs: usize, [found, others]: [&[AtRow]; 2]) -
     let differs = |(number, (own, other)): &(usize, (&AtRow, &AtRow))| {
         let pairs = influences(own).into_iter().zip(influences(other));
         // Written so that NaN differs.
-        !pairs.map(|(own, other)| (own - other).abs()).all(|change| change <= AGREEMENT * largest[number % outputs])
+        !pairs
+            .map(|(own, other)| (own - other).abs())
+            .all(|change| change <= TUNING.agreement * largest[number % outputs])
     };
     let mut pairs = found.iter().zip(others).enumerate();
     pairs.find(differs).map(|(number, _)| number / outputs)

@@ -7,14 +7,12 @@ use symdiff::Formula;
 
 use super::super::drawing::asked::{Asked, AskedVector, Values};
 use super::rows::Rows;
+use super::tuning::TUNING;
 use crate::grammar::{PointRef, Sensor};
 use crate::model::{Analysis, Description};
 use crate::results::MovingForce;
 use crate::simulate::Interruption;
 use crate::study::RunError;
-
-/// Most arrows; a model with more joints and effects has those of the first.
-const MOST: usize = 40;
 
 /// A force that is asked.
 struct AskedForce {
@@ -65,7 +63,7 @@ fn simulated(
         let values = along(&wanted);
         MovingForce { name: wanted.name, is_reaction: wanted.is_reaction, values }
     });
-    Ok(all.filter(is_there).take(MOST).collect())
+    Ok(all.filter(is_there).take(TUNING.most_arrows).collect())
 }
 
 /// Whether it acts at any time, and is a number at all of them.

@@ -10,6 +10,7 @@ mod reach;
 mod rows;
 mod samples;
 mod thinning;
+pub(crate) mod tuning;
 mod worst;
 
 use super::drawing::asked::{Asked, AskedBody, Values};
@@ -24,17 +25,11 @@ pub use movable::Movable;
 use rows::Rows;
 use samples::Samples;
 use thinning::Thinning;
+use tuning::TUNING;
 use worst::add_worst_motions;
 
-/// Straight lines between poses are near enough at this share of the model's size.
-const NEAR: f64 = 2e-4;
-
-/// Fewest and most poses.
-const FEWEST: usize = 24;
-const MOST: usize = 600;
-
-/// Numbers of two bytes that the motions of a report come to, about: with base64 it keeps below 2 MB beside its plots.
-pub const REPORT_SIZE: usize = 300_000;
+/// Numbers of two bytes that the motions of a report come to, about.
+pub const REPORT_SIZE: usize = TUNING.report_size;
 
 /// How a motion is found.
 #[derive(Clone, Copy, Debug)]
@@ -140,11 +135,11 @@ impl<'a> Posed<'a> {
 
         let lines = self.lines();
         let terms = surrogate.map_or(0, |surrogate| surrogate.basis().len());
-        let most = (size / (lines * (2 + shown.len() + terms)).max(1)).clamp(FEWEST, MOST);
+        let most = (size / (lines * (2 + shown.len() + terms)).max(1)).clamp(TUNING.fewest_poses, TUNING.most_poses);
         let weights = self.weights(&recorded[0].points, &drawing);
         let looked_at: Vec<&[f64]> = [0].iter().chain(&shown).map(|&sample| recorded[sample].rows.as_slice()).collect();
         let thinning = Thinning { samples: looked_at, weights: &weights };
-        let (kept, between) = thinning.rows(&times, most, NEAR * self.rows.simulator.system.length);
+        let (kept, between) = thinning.rows(&times, most, TUNING.near_pose * self.rows.simulator.system.length);
 
         let poses = |sample: &Recorded| Poses {
             bodies: kept.iter().flat_map(|row| &sample.rows[row * lines..][..lines]).copied().collect(),
@@ -318,7 +313,7 @@ mod tests {
         let motion =
             motion(&four_bar(), MotionOptions { threads: Some(1), size: 1, interruption: Interruption::default() })
                 .unwrap();
-        assert_eq!((motion.times.len(), motion.rows), (FEWEST, 201));
+        assert_eq!((motion.times.len(), motion.rows), (TUNING.fewest_poses, 201));
         assert!(motion.between > 1e-3, "{}", motion.between);
     }
 }

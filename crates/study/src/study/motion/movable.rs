@@ -2,7 +2,8 @@
 
 use super::by_hand::Hand;
 use super::thinning::Thinning;
-use super::{FEWEST, MOST, NEAR, Posed, Recorded};
+use super::tuning::TUNING;
+use super::{Posed, Recorded};
 use crate::model::Description;
 use crate::numerics::Sample;
 use crate::results::{Drawing, Motion, Poses};
@@ -43,9 +44,9 @@ impl<'a> Movable<'a> {
         let Recorded { rows, points, .. } = &recorded[0];
         let lines = posed.lines();
         let weights = posed.weights(points, &self.drawing);
-        let most = (size / (2 * lines).max(1)).clamp(FEWEST, MOST);
+        let most = (size / (2 * lines).max(1)).clamp(TUNING.fewest_poses, TUNING.most_poses);
         let thinning = Thinning { samples: vec![rows], weights: &weights };
-        let (kept, between) = thinning.rows(&times, most, NEAR * posed.rows.simulator.system.length);
+        let (kept, between) = thinning.rows(&times, most, TUNING.near_pose * posed.rows.simulator.system.length);
         let bodies = kept.iter().flat_map(|row| &rows[row * lines..][..lines]).copied().collect();
         Ok(Motion {
             drawing: posed.with_ground(self.description, self.drawing.clone(), rows)?,

@@ -9,29 +9,9 @@ use std::collections::HashMap;
 
 use nalgebra::{DMatrix, DVector};
 
+use super::tuning::TUNING;
 use crate::numerics::Sample;
 use crate::simulate::{Closure, Configuration, Points, Simulator, choose_independent};
-
-/// Steps of one search.
-const ROUNDS: usize = 25;
-
-/// Change of a coordinate for a derivative, in its scale: the error of a difference is about that of rounding.
-const DIFFERENCE: f64 = 1e-7;
-
-/// Furthest change of a coordinate in one step, in its scale.
-const FURTHEST: f64 = 0.25;
-
-/// Distance of a closure from its prediction, in the scales of the coordinates, from where on it is another branch.
-const OTHER_BRANCH: f64 = 0.3;
-
-/// Damping that is tried in each step, relative to the diagonal of the normal equations.
-const DAMPING: [f64; 5] = [1e-12, 1e-4, 1e-2, 1.0, 100.0];
-
-/// Shares of a step that are tried.
-const SHARES: [f64; 3] = [1.0, 0.3, 0.05];
-
-/// A search ends where a step improves the sum of squares by less than this share.
-const SETTLED: f64 = 1e-10;
 
 /// A configuration, closed.
 #[derive(Clone, Debug)]
@@ -78,7 +58,7 @@ impl<'s> Reach<'s> {
     pub fn towards(&mut self, from: &Reached, sample: &Sample, wanted: &dyn Fn(&[f64]) -> Vec<f64>) -> Reached {
         let scale: Vec<f64> = self.simulator.system.coordinates.iter().map(|own| own.scale).collect();
         let mut now = from.clone();
-        for _ in 0..ROUNDS {
+        for _ in 0..TUNING.steps_of_search {
             let independent: Vec<usize> = choose_independent(self.simulator, sample, &now.positions, 0.0)
                 .into_iter()
                 .map(|id| id.number())
@@ -94,7 +74,7 @@ impl<'s> Reach<'s> {
             let at = |motions: &[Vec<f64>]| closure.configurations(0.0, &points(sample, motions));
             let changed = |coordinate: usize| {
                 let mut motion = now.positions.clone();
-                motion[coordinate] += DIFFERENCE * scale[coordinate];
+                motion[coordinate] += TUNING.step_of_difference * scale[coordinate];
                 motion
             };
             let motions: Vec<Vec<f64>> =
@@ -112,10 +92,13 @@ impl<'s> Reach<'s> {
             if moved.is_empty() {
                 return now;
             }
-            // Per step of DIFFERENCE; a coordinate that cannot be changed stays.
+            // Per step of TUNING.step_of_difference; a coordinate that cannot be changed stays.
             let slope = |own: &Configuration| {
                 let of = if own.is_closed { wanted(&own.outputs) } else { away.clone() };
-                DVector::from_iterator(away.len(), of.iter().zip(&away).map(|(to, from)| (to - from) / DIFFERENCE))
+                DVector::from_iterator(
+                    away.len(),
+                    of.iter().zip(&away).map(|(to, from)| (to - from) / TUNING.step_of_difference),
+                )
             };
             let slopes = DMatrix::from_columns(&nearby.iter().map(slope).collect::<Vec<_>>());
             let away = DVector::from_vec(away);
@@ -123,7 +106,7 @@ impl<'s> Reach<'s> {
                 let mut motion = base.positions.clone();
                 for (own, share) in nearby.iter().zip(step.iter()).filter(|(own, _)| own.is_closed) {
                     for ((value, to), from) in motion.iter_mut().zip(&own.positions).zip(&base.positions) {
-                        *value += share * (to - from) / DIFFERENCE;
+                        *value += share * (to - from) / TUNING.step_of_difference;
                     }
                 }
                 motion
@@ -131,7 +114,8 @@ impl<'s> Reach<'s> {
             let motions: Vec<Vec<f64>> = steps(&slopes, &away).iter().map(predicted).collect();
             let is_near = |(found, motion): &(Configuration, &Vec<f64>)| {
                 let mut far = found.positions.iter().zip(*motion).zip(&scale);
-                found.is_closed && far.all(|((found, wanted), scale)| (found - wanted).abs() <= OTHER_BRANCH * scale)
+                found.is_closed
+                    && far.all(|((found, wanted), scale)| (found - wanted).abs() <= TUNING.other_branch * scale)
             };
             let cost = |outputs: &[f64]| wanted(outputs).iter().map(|away| away * away).sum::<f64>();
             let before = away.norm_squared();
@@ -142,7 +126,7 @@ impl<'s> Reach<'s> {
             let Some(Candidate { found, cost }) = best.filter(|best| best.cost < before) else { return now };
             let Configuration { positions, outputs, residual, .. } = found;
             now = Reached { positions, outputs, residual, freedom: moved.len() };
-            if cost >= before * (1.0 - SETTLED) {
+            if cost >= before * (1.0 - TUNING.settled) {
                 break;
             }
         }
@@ -163,10 +147,12 @@ fn steps(slopes: &DMatrix<f64>, away: &DVector<f64>) -> Vec<DVector<f64>> {
         (0..matrix.nrows()).for_each(|own| matrix[(own, own)] += damping * largest.max(f64::MIN_POSITIVE));
         let step = matrix.cholesky()?.solve(&right);
         let furthest = step.amax();
-        furthest.is_finite().then(|| if furthest > FURTHEST { step * (FURTHEST / furthest) } else { step })
+        furthest
+            .is_finite()
+            .then(|| if furthest > TUNING.furthest { step * (TUNING.furthest / furthest) } else { step })
     };
-    let whole = DAMPING.into_iter().filter_map(damped);
-    whole.flat_map(|step| SHARES.map(|share| share * &step)).collect()
+    let whole = TUNING.dampings.into_iter().filter_map(damped);
+    whole.flat_map(|step| TUNING.shares_of_step.map(|share| share * &step)).collect()
 }
 
 /// A sample with motions at rest.

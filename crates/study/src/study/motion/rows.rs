@@ -7,6 +7,7 @@ use rayon::prelude::*;
 use super::super::drawing::asked::{Asked, Values};
 use super::super::stepping::StepPlan;
 use super::super::{RunError, formulation};
+use super::tuning::TUNING;
 use crate::assemble::Questions;
 use crate::model::{Analysis, Description, ModesRequest, Stepping};
 use crate::numerics::{ParameterBox, Sample};
@@ -14,15 +15,6 @@ use crate::simulate::{
     Controller, EnsembleRun, Integration, Integrator, Interruption, Observed, Schedule, SimulationError, Simulator,
     Steps, TimeFunctions, schedule_for_tolerance,
 };
-
-/// Numbers that rows and samples may come to in memory; of a longer simulation every second, third … row is looked at.
-const MOST_NUMBERS: usize = 1 << 24;
-
-/// Rows that are simulated at a time.
-const BLOCK: usize = 64;
-
-/// Controlling samples of the steps beside the nominal one.
-const CONTROLLING: usize = 8;
 
 /// A model that is asked for something in place of its outputs.
 pub(in crate::study) struct Rows<'a> {
@@ -43,7 +35,7 @@ struct Running<'a> {
 
 /// How many rows one stands for that is looked at, of so many numbers.
 fn every(numbers: usize) -> usize {
-    numbers.div_ceil(MOST_NUMBERS).max(1)
+    numbers.div_ceil(TUNING.most_numbers).max(1)
 }
 
 impl<'a> Rows<'a> {
@@ -109,7 +101,7 @@ impl<'a> Rows<'a> {
         let mut values = Vec::new();
         let mut next = 0;
         while next < schedule.rows && stopped[0].is_none() {
-            let block = next..(next + BLOCK).min(schedule.rows);
+            let block = next..(next + TUNING.rows_at_once).min(schedule.rows);
             for stop in run.advance(plan.steps(), block.clone(), Observed::Outputs, &mut values) {
                 stopped[running[stop.sample]].get_or_insert(stop.row.div_ceil(every));
             }
@@ -183,7 +175,7 @@ impl<'a> Rows<'a> {
                 (Schedule::fixed(duration, step, output_step).taken(integration), None)
             }
             Stepping::Tolerance(tolerance) => {
-                let controlling = &samples[..samples.len().min(1 + CONTROLLING)];
+                let controlling = &samples[..samples.len().min(1 + TUNING.controlling)];
                 let found = schedule_for_tolerance(
                     &self.simulator,
                     controlling,

@@ -1,16 +1,7 @@
 //! Which samples show how uncertain a motion is, and of which polynomials of it are made.
 
+use super::tuning::TUNING;
 use crate::numerics::{ParameterBox, Sample, SparseGrid, Surrogate, corners, spread};
-
-/// Corners of the box among the samples that are shown, and samples inside it.
-const CORNERS: usize = 8;
-const INSIDE: usize = 8;
-
-/// Degrees of polynomials by the number of parameters: the sum of degrees in a term is at most this.
-const DEGREES: [usize; 7] = [0, 6, 4, 3, 2, 2, 2];
-
-/// Most parameters for which polynomials are made; beyond those of [`DEGREES`], of each parameter alone.
-const MOST_PARAMETERS: usize = 20;
 
 /// Samples of a box.
 pub(super) struct Samples {
@@ -28,8 +19,8 @@ impl Samples {
         if k == 0 {
             return Self { shown: Vec::new(), surrogate: None, nodes: Vec::new() };
         }
-        let places = corners(k, CORNERS).into_iter().chain(spread(k, INSIDE));
-        let surrogate = (k <= MOST_PARAMETERS).then(|| Surrogate::sparse(&grid(k)));
+        let places = corners(k, TUNING.corners).into_iter().chain(spread(k, TUNING.inside));
+        let surrogate = (k <= TUNING.most_parameters).then(|| Surrogate::sparse(&grid(k)));
         let nodes = surrogate.iter().flat_map(Surrogate::samples).map(|xi| domain.sample(xi)).collect();
         Self { shown: places.map(|xi| domain.sample(&xi)).collect(), surrogate, nodes }
     }
@@ -37,7 +28,7 @@ impl Samples {
 
 /// All terms of a total degree; for many parameters a parabola in each.
 fn grid(k: usize) -> SparseGrid {
-    let (degree, together) = DEGREES.get(k).map_or((2, 1), |&degree| (degree, k));
+    let (degree, together) = TUNING.degrees.get(k).map_or((2, 1), |&degree| (degree, k));
     let allowed = |levels: &[u8]| {
         let total: usize = levels.iter().map(|&level| usize::from(level)).sum();
         total <= degree && levels.iter().filter(|&&level| level > 0).count() <= together

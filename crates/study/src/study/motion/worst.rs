@@ -1,13 +1,11 @@
 //! Motions under the worst functions of excitations: each a model of its own, with the functions in place of limits.
 
+use super::tuning::TUNING;
 use super::{MotionOptions, Posed, Recorded};
 use crate::model::{Description, Witness, deviation_of};
 use crate::results::{FunctionWitness, Motion, Poses, WorstMotion};
 use crate::simulate::SimulationError;
 use crate::study::{RunError, pool};
-
-/// Most of them.
-const MOST: usize = 8;
 
 /// Adds the motions under the functions of a run to that of a report, at its times. One that cannot be simulated is
 /// left out.
@@ -22,7 +20,7 @@ pub(super) fn add_worst_motions(
 ) -> Result<(), RunError> {
     let pool = pool(options.threads)?;
     pool.install(|| {
-        for own in witnesses.iter().take(MOST) {
+        for own in witnesses.iter().take(TUNING.worst_motions) {
             match worst(description, motion, own, options) {
                 Err(RunError::Simulation(SimulationError::Interrupted)) => {
                     return Err(SimulationError::Interrupted.into());

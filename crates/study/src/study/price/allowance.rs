@@ -10,9 +10,6 @@ use crate::study::price::tuning::TUNING;
 use crate::methods::Budget;
 use crate::numerics::clock::Instant;
 
-/// Seconds that nothing takes.
-const FOR_EVER: f64 = 1e9;
-
 /// How long a run goes on that nobody has allowed to take long: three times its estimate, and no less than three times
 /// the longest estimate with which a run begins unasked.
 #[derive(Debug)]
@@ -40,13 +37,13 @@ impl Allowance {
     /// Adds the estimate of another round, of which the model allows so much.
     pub(in crate::study) fn expect(&self, price: &Price, budget: &Budget) {
         let is_allowed = budget.simulations > Budget::default().simulations;
-        let seconds = if is_allowed { FOR_EVER } else { price.at_most() + budget.seconds.unwrap_or(0.0) };
+        let seconds = if is_allowed { TUNING.for_ever } else { price.at_most() + budget.seconds.unwrap_or(0.0) };
         self.expected.fetch_add((1e3 * seconds) as u64, Ordering::Relaxed);
     }
 
     /// Lets the run take as long as it does.
     pub(in crate::study) fn lift(&self) {
-        self.expected.fetch_add((1e3 * FOR_EVER) as u64, Ordering::Relaxed);
+        self.expected.fetch_add((1e3 * TUNING.for_ever) as u64, Ordering::Relaxed);
     }
 
     /// Whether the run is to end.

@@ -1,6 +1,7 @@
 //! How much memory a run's results take at least, and whether it is there: what would end in the middle is refused
 //! before it begins.
 
+use super::tuning::TUNING;
 use super::work::held_out;
 use crate::methods::Sensitivity;
 use crate::study::problem::Study;
@@ -10,7 +11,6 @@ use crate::study::problem::Study;
 const NUMBER: usize = size_of::<f64>();
 const RANGE: usize = 2 * NUMBER;
 const SENSITIVITIES: usize = size_of::<Option<Sensitivity>>();
-const LIST: usize = 32;
 
 /// More memory than there is.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -42,7 +42,7 @@ impl Memory {
 fn least_bytes(study: &Study) -> u64 {
     let (k, methods) = (study.domain.dimension(), study.request.methods().len());
     let found = RANGE + 2 * NUMBER + SENSITIVITIES;
-    let of_method = found + 3 * LIST.max(k * NUMBER) + (3 + 3 * k) * NUMBER;
+    let of_method = found + 3 * TUNING.list_bytes.max(k * NUMBER) + (3 + 3 * k) * NUMBER;
     let of_output = held_out(study) * NUMBER + found + NUMBER + methods * of_method;
     let of_row = (study.simulator.system.outputs.len() as u64).saturating_mul(of_output as u64);
     of_row.saturating_mul(study.rows() as u64)

@@ -1,6 +1,6 @@
 //! Constants of the room `price`.
 
-use crate::syntax::tuning::tuning;
+use symdiff::constants::tuning;
 
 tuning! {
     /// The price of a run.
@@ -21,5 +21,9 @@ tuning! {
         /// Time in which a value of a surrogate is fitted and bounded, s: from 0.6 to 6 µs were measured with 625 to
         /// 4913 samples of three to seven parameters.
         value_seconds: f64 = 5e-7, moves "which runs ask before they begin";
+        /// Seconds that nothing takes.
+        for_ever: f64 = 1e9, moves "which runs are refused";
+        /// Fewest bytes of each of the three lists of an output's sensitivities in a row.
+        list_bytes: usize = 32, moves "which runs are refused for want of memory";
     }
 }

@@ -6,6 +6,7 @@ use super::evaluated::Evaluated;
 use super::keeping::kept_reduced;
 use super::plan::ReductionPlan;
 use super::slopes::OfValues;
+use super::tuning::TUNING;
 use super::verdicts::verdicts;
 use crate::methods::{
     BandBuilder, BoundingMethod, Ensemble, Ensembles, Expand, MOST_ON_GRIDS, Method, MethodResult, Observed, Sampling,
@@ -23,9 +24,6 @@ use crate::study::bounding::{Bounded, Doubts, FunctionEnds, Outcome, bands, cont
 use crate::study::ensemble::Progress;
 use crate::study::problem::{Study, problem};
 use crate::study::stepping::{StepPlan, divided};
-
-/// A corner's course cuts the time instead of the nominal one where it ranges so many times as far.
-const MUCH: f64 = 4.0;
 
 /// Plans the reductions during the motions, by the nominal one.
 ///
@@ -59,7 +57,7 @@ pub fn plan_reduction(study: &Study, plan: &StepPlan) -> Result<(), SimulationEr
         // The nominal one, unless another moves much more.
         let nominal = of(output, 0);
         let widest = (1..samples.len()).map(|sample| of(output, sample)).fold(nominal.clone(), wider);
-        if Range::of(&widest).width() > MUCH * Range::of(&nominal).width() { widest } else { nominal }
+        if Range::of(&widest).width() > TUNING.much_further * Range::of(&nominal).width() { widest } else { nominal }
     };
     study.store.get_or_init(|| Store::new(ReductionPlan::of(description, &times, &course)));
     Ok(())

@@ -5,13 +5,11 @@
 //! lower bounds in the rows, which know no such kink; only what lies between rows is estimated.
 
 use super::part::MarginPart;
+use super::tuning::TUNING;
 use crate::model::Requirement;
 use crate::results::Band;
 use crate::study::bounding::{Bounded, bands};
 use crate::study::problem::Study;
-
-/// What the estimate of a dip between rows may be wrong by.
-const SAFETY: f64 = 2.0;
 
 /// Bounds of a requirement's margin from the rows; `None` where they do not say, or where a simulated sample with a
 /// margin of `simulated` contradicts them.
@@ -29,7 +27,8 @@ pub fn by_rows(study: &Study, own: &Requirement, rows: &Bounded, simulated: f64)
         let is_known = |band: &&Band| span.iter().all(|&row| band.error.decisive(row).is_some());
         let band = bands.iter().find(is_resolved).or(bands.iter().find(is_known))?;
         let lower = &band.lower[first..=last];
-        let dip = lower.windows(3).map(|l| SAFETY / 8.0 * (l[0] - 2.0 * l[1] + l[2]).abs()).fold(0.0, f64::max);
+        let dip =
+            lower.windows(3).map(|l| TUNING.safety_of_dip / 8.0 * (l[0] - 2.0 * l[1] + l[2]).abs()).fold(0.0, f64::max);
         let reached = |row: usize| lower[row] - band.error.decisive(first + row).unwrap_or(f64::NAN);
         let least = (0..lower.len()).map(reached).fold(f64::INFINITY, f64::min) - dip;
         let lower = lower.iter().copied().fold(f64::INFINITY, f64::min);

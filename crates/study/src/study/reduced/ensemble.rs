@@ -11,15 +11,13 @@ use symdiff::jet::JetSpace;
 use symdiff::taylor_model::ModelSpace;
 
 use super::plan::ReductionPlan;
+use super::tuning::TUNING;
 use super::values::Values;
 use crate::methods::{
     self, EnclosedRow, EnclosureEnd, Ensemble, EnsembleError, FollowedEnds, Observed, Proof, Sampling, Simulated, Until,
 };
 use crate::numerics::{Ledger, ParameterBox, Range, Sample};
 use crate::simulate::Schedule;
-
-/// Most numbers that are kept.
-const MOST_KEPT: usize = 1 << 24;
 
 /// A schedule: number of its steps, its longest one's bits, and how many are taken for each.
 pub type Steps = (usize, u64, usize);
@@ -55,7 +53,7 @@ impl Store {
         // Stored values are whole, whoever panicked.
         let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
         for (index, sample) in samples.iter().enumerate() {
-            if kept.len() * (self.plan.channels.len() + sample.len()) < MOST_KEPT {
+            if kept.len() * (self.plan.channels.len() + sample.len()) < TUNING.most_kept {
                 let channels = values.iter().skip(index).step_by(samples.len()).copied().collect();
                 kept.insert((steps, bits(sample)), channels);
             }

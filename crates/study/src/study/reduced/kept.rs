@@ -6,12 +6,10 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::ensemble::Composition;
+use super::tuning::TUNING;
 use super::values::{Selection, Values};
 use crate::methods::{Closure, KeptSurrogate};
 use crate::numerics::{BandError, largest};
-
-/// Samples evaluated by one thread at once. Fixed, so that results do not depend on the number of threads.
-const CHUNK: usize = 512;
 
 /// The surrogate of all reduced outputs, then of all margins of requirements.
 #[derive(Clone, Debug)]
@@ -34,7 +32,7 @@ impl KeptReduced {
         let wanted: Vec<usize> = (0..count).collect();
         let closures = self.closures();
         let of_chunk = |samples: &[P]| self.surrogate.values(0, &wanted, samples, &closures);
-        let chunks: Vec<Vec<f64>> = samples.par_chunks(CHUNK).map(of_chunk).collect();
+        let chunks: Vec<Vec<f64>> = samples.par_chunks(TUNING.samples_at_once).map(of_chunk).collect();
         together(count, &chunks, samples.len())
     }
 
@@ -74,7 +72,7 @@ impl KeptReduced {
             };
             (0..count * samples.len()).map(margin).collect::<Vec<f64>>()
         };
-        let chunks: Vec<Vec<f64>> = samples.par_chunks(CHUNK).map(of_chunk).collect();
+        let chunks: Vec<Vec<f64>> = samples.par_chunks(TUNING.samples_at_once).map(of_chunk).collect();
         together(count, &chunks, samples.len())
     }
 

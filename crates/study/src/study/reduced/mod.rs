@@ -21,6 +21,7 @@ mod plan;
 mod refine;
 mod simulated;
 mod slopes;
+pub(crate) mod tuning;
 mod values;
 mod verdicts;
 

@@ -7,16 +7,11 @@
 
 use std::sync::Arc;
 
+use super::tuning::TUNING;
 use super::values::{Humps, Value, Values};
 use crate::assemble::NumberFormulas;
 use crate::model::{Description, ReducedKind, ReducedOutput, Requirement};
 use crate::simulate::{Accumulation, Channel};
-
-/// Most windows of a reduced output: a motion with more extremes has them two by two in one.
-const MOST_WINDOWS: usize = 8;
-
-/// A dip between two humps cuts the time where it is deeper than this share of the range.
-const DEEP: f64 = 0.02;
 
 /// Accumulated quantities, and the values that follow.
 #[derive(Debug)]
@@ -197,7 +192,7 @@ impl Planner<'_> {
             }
             let shallowest = (0..dips.len()).min_by(|&a, &b| dips[a].1.total_cmp(&dips[b].1));
             match shallowest {
-                Some(number) if dips[number].1 < DEEP * (high - low) || dips.len() >= MOST_WINDOWS => {
+                Some(number) if dips[number].1 < TUNING.deep * (high - low) || dips.len() >= TUNING.most_windows => {
                     dips.remove(number)
                 }
                 _ => break,
@@ -226,7 +221,7 @@ mod tests {
         // Dips at π, 3π and 5π.
         assert_eq!(found.len(), 4);
         assert!((found[0].1 - std::f64::consts::PI).abs() < 0.05 && found[3].1.is_infinite());
-        assert_eq!(windows(5.0).len(), MOST_WINDOWS);
+        assert_eq!(windows(5.0).len(), TUNING.most_windows);
         assert_eq!(windows(0.1), [(0.0, f64::INFINITY)]);
     }
 }

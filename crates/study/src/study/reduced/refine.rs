@@ -3,17 +3,11 @@
 use std::borrow::Cow;
 
 use super::super::{Kept, Options, RunError, subsystems};
+use super::tuning::TUNING;
 use crate::methods::{Chebyshev, Degree};
 use crate::model::{Description, Stepping};
 use crate::numerics::clock::Instant;
 use crate::results::{Bounds, MethodSummary, RequirementSummary, Summary, Verdict};
-
-/// Most rounds after the first.
-const ROUNDS: usize = 5;
-
-/// What a degree grows by, and how many times smaller a tolerance becomes.
-const MORE: usize = 2;
-const SMALLER: f64 = 8.0;
 
 /// Said where a round was not awaited.
 const UNFINISHED: &str = "interrupted in a refining round: results are those of the round before";
@@ -32,7 +26,7 @@ pub fn run(model: &Description, options: &Options, keep: bool) -> Result<(Bounds
     let budget = model.bounds.budget;
     let begun = Instant::now();
     let (mut before, mut spent, mut rounds) = (simulations(&found.1), 0, 0);
-    while rounds < ROUNDS && !(options.interrupted)() {
+    while rounds < TUNING.rounds && !(options.interrupted)() {
         let undecided = found.1.requirements.iter().filter(|own| own.verdict == Verdict::Undecided);
         let Some(finer) = undecided.map(|own| refined(&model, own, &found.1)).find_map(|finer| finer) else { break };
         // The next round takes about as much again for each node.
@@ -76,15 +70,15 @@ fn refined(model: &Description, own: &RequirementSummary, summary: &Summary) -> 
     match finer.simulation.stepping {
         Stepping::Fixed(step) if by_steps => finer.simulation.stepping = Stepping::Fixed(0.5 * step),
         Stepping::Tolerance(tolerance) if by_steps => {
-            finer.simulation.stepping = Stepping::Tolerance(tolerance / SMALLER);
+            finer.simulation.stepping = Stepping::Tolerance(tolerance / TUNING.smaller_tolerance);
         }
         _ => match &mut finer.bounds.chebyshev {
             Some(Chebyshev { degree: Degree::Fixed { order, nodes }, .. }) => {
-                order.iter_mut().chain(nodes).for_each(|count| *count += MORE);
+                order.iter_mut().chain(nodes).for_each(|count| *count += TUNING.more_degrees);
             }
             Some(_) => {
                 let known = finer.bounds.tolerance.unwrap_or(crate::methods::BoundsRequest::TOLERANCE);
-                finer.bounds.tolerance = Some(known / SMALLER);
+                finer.bounds.tolerance = Some(known / TUNING.smaller_tolerance);
             }
             None => return None,
         },

@@ -4,24 +4,15 @@ use super::by_rows::by_rows;
 use super::ensemble::ReducedEnsemble;
 use super::evaluated::Evaluated;
 use super::part::MarginPart;
+use super::tuning::TUNING;
 use crate::grammar::display_unit::ShownUnit;
 use crate::methods::Method;
 use crate::model::Requirement;
-use crate::numerics::{Sample, step_error};
+use crate::numerics::{SAFETY_OF_STEPS, Sample, step_error};
 use crate::results::{Band, LimitLine, NearestCase, RequirementSummary, Verdict, foremost};
 use crate::simulate::SimulationError;
 use crate::study::bounding::{Bounded, bands, simulation_error};
 use crate::study::problem::Study;
-
-/// What the estimate of a sample's time error may be wrong by.
-const SAFETY: f64 = 1.25;
-
-/// Rounding of a sample's margin, as a share of its limit: a sample that meets the limit exactly does not pass it.
-const ROUNDING: f64 = 1e-12;
-
-/// Rounds of the search for a sample that fails, where bounds say that there may be one, and its first distance (of ξ).
-const ROUNDS: usize = 6;
-const REACH: f64 = 0.5;
 
 /// NaN is passed on.
 fn smaller(a: f64, b: f64) -> f64 {
@@ -158,8 +149,8 @@ fn nearest(
         Ok::<_, SimulationError>((margin(&all), channels))
     };
     let ((least, channels), (finer, _)) = (of(direct)?, of(halved)?);
-    let rounding = own.limits.iter().map(|limit| ROUNDING * limit.value.abs()).fold(0.0, f64::max);
-    let error = SAFETY * step_error(&[least], &[finer]) + rounding;
+    let rounding = own.limits.iter().map(|limit| TUNING.rounding_of_margin * limit.value.abs()).fold(0.0, f64::max);
+    let error = SAFETY_OF_STEPS * step_error(&[least], &[finer]) + rounding;
     let xi = study.domain.xi(&best.0);
     let known = study.simulator.system.parameters.iter().zip(best.0.iter());
     Ok(Some(NearestCase {
@@ -180,8 +171,8 @@ fn search(
     best: &mut (Sample, f64),
     ensemble: &ReducedEnsemble,
 ) -> Result<(), SimulationError> {
-    let mut reach = REACH;
-    for _ in 0..ROUNDS {
+    let mut reach = TUNING.first_reach;
+    for _ in 0..TUNING.rounds_of_search {
         let xi = study.domain.xi(&best.0);
         let mut around: Vec<Vec<f64>> = Vec::new();
         for axis in 0..xi.len() {

@@ -1,14 +1,12 @@
 //! The joint law of all uncertain parameters of a model.
 
+use super::tuning::TUNING;
 use super::zones::LawInZone;
 use super::{intervals, law_summary};
 use crate::model::{Description, Law, ParameterValue};
 use crate::numerics::statistics::{Copula, Distribution, Quantiles, normal_quantile, replicate};
 use crate::results::LawSummary;
 use symdiff::math;
-
-/// A surrogate reaches as many standard deviations to either side of a normal law: 2e-9 of it lies beyond.
-const REACH: f64 = 6.0;
 
 /// Laws and correlations of the uncertain parameters in the model's order.
 pub struct Laws {
@@ -173,9 +171,11 @@ impl Laws {
 /// The ends of an interval that has nearly all of a law.
 pub(super) fn ends(law: &Law, (lower, upper): (f64, f64)) -> (f64, f64) {
     match law.distribution {
-        Distribution::Normal { mean, sigma } => (lower.min(mean - REACH * sigma), upper.max(mean + REACH * sigma)),
+        Distribution::Normal { mean, sigma } => {
+            (lower.min(mean - TUNING.sigmas_of_surrogate * sigma), upper.max(mean + TUNING.sigmas_of_surrogate * sigma))
+        }
         Distribution::Lognormal { median, sigma, .. } => {
-            let far = math::exp(REACH * sigma);
+            let far = math::exp(TUNING.sigmas_of_surrogate * sigma);
             (lower.min(median / far), upper.max(median * far))
         }
         _ => (lower, upper),

@@ -10,6 +10,7 @@ mod requirements;
 mod residuals;
 mod rows;
 mod stack;
+pub(crate) mod tuning;
 mod zones;
 
 use super::answers::Kept;

@@ -1,11 +1,9 @@
 //! Reduced outputs: their distribution, by samples of the surrogate of their values.
 
 use super::rows::Rows;
+use super::tuning::TUNING;
 use crate::numerics::statistics::{Estimate, REPLICATES, Replicates};
 use crate::results::{NumberStatistics, Uncertain};
-
-/// Samples, at most.
-const MOST: usize = 1 << 18;
 
 /// Those whose surrogate is known.
 ///
@@ -17,7 +15,7 @@ pub(super) fn all(rows: &Rows) -> Result<Vec<NumberStatistics>, String> {
     rows.stage("statistics of reduced outputs");
     let (around, shares) = rows.shares(true);
     let at_products = rows.residuals.as_ref().map(|residuals| (residuals, kept.values(&residuals.samples)));
-    let fewer = rows.fewer(MOST / REPLICATES);
+    let fewer = rows.fewer(TUNING.most_samples_of_numbers / REPLICATES);
     let mut of_number = vec![Replicates::new(shares.len()); reduced.len()];
     for replicate in 0..REPLICATES {
         rows.progress(replicate, REPLICATES);

@@ -4,6 +4,7 @@
 use rayon::prelude::*;
 
 use super::realisations::{Realisations, realisations, samples, varied};
+use super::tuning::TUNING;
 use super::{INTERRUPTED, Laws};
 use crate::model::{Analysis, Description, Requirement};
 use crate::numerics::statistics::{
@@ -19,12 +20,6 @@ use crate::study::ensemble::Progress;
 use crate::study::prepared::{Prepared, choices, prepare};
 use crate::study::problem::Study;
 use crate::syntax::suggest;
-
-/// Samples where a model asks for no number: the quantiles of a normal law's three deviations need 2731.
-const SAMPLES: usize = 1 << 12;
-
-/// Most numbers that are kept: samples times rows times outputs.
-const MOST_NUMBERS: usize = 1 << 26;
 
 /// How a share was found.
 const METHOD: &str = "simulated motions";
@@ -47,13 +42,13 @@ pub(super) fn of_motions(
     options: &Options,
 ) -> Result<StatisticsResult, String> {
     let asked = &description.statistics;
-    let (count, seed) = (asked.samples.unwrap_or(SAMPLES), asked.seed);
+    let (count, seed) = (asked.samples.unwrap_or(TUNING.samples_of_random), asked.seed);
     let model = varied(description);
     let mut laws = Laws::of(&model)?;
     let model = laws.widened(&model);
     let simulation = &description.simulation;
     let numbers = simulation.duration / simulation.output_step * (count * description.outputs.len()) as f64;
-    if numbers > MOST_NUMBERS as f64 {
+    if numbers > TUNING.most_numbers_of_random as f64 {
         return Err(format!("{numbers:.0} values are too many to be kept: ask for fewer samples or rows"));
     }
     (options.stage)("random motions");

@@ -4,7 +4,7 @@ use crate::elements::RandomFunction;
 use crate::methods::{Ensemble, Observed, Sampling, Until};
 use crate::model::{Description, ParameterValue, Trajectory};
 use crate::numerics::statistics::Normals;
-use crate::numerics::{Sample, step_error};
+use crate::numerics::{SAFETY_OF_STEPS, Sample, step_error};
 use crate::reduce::Subsystem;
 use crate::simulate::SimulationError;
 use crate::study::ensemble::{Progress, samples_of_part};
@@ -14,18 +14,10 @@ use crate::study::sample::steps_of_samples;
 use crate::study::stepping::StepPlan;
 
 use super::Laws;
+use super::tuning::TUNING;
 
 /// Seeds between which samples draw: ends whose products with the whole numbers of realisations are no whole numbers.
 const SEEDS: [f64; 2] = [0.211_324_865_405_187_13, 0.788_675_134_594_812_9];
-
-/// Samples of one seed have streams of their own.
-const MOST_SAMPLES: usize = 1 << 24;
-
-/// Samples that are simulated with halved steps too.
-const HALVED: usize = 16;
-
-/// What the largest error of these samples may be exceeded by, as with validation samples.
-const SAFETY: f64 = 1.25;
 
 /// A model whose realisations are uncertain.
 pub(super) fn varied(description: &Description) -> Description {
@@ -45,7 +37,8 @@ pub(super) fn varied(description: &Description) -> Description {
 
 /// Independent samples of laws.
 pub(super) fn samples(laws: &Laws, seed: usize, count: usize) -> Vec<Vec<f64>> {
-    let of = |number: usize| laws.of_scores(&Normals::new(seed * MOST_SAMPLES + number).draw(laws.dimension()));
+    let of =
+        |number: usize| laws.of_scores(&Normals::new(seed * TUNING.most_realisations + number).draw(laws.dimension()));
     (0..count).map(of).collect()
 }
 
@@ -87,9 +80,9 @@ pub(super) fn realisations(
     let count = if study.domain.dimension() == 0 { 1 } else { samples.len() };
     let all: Vec<Sample> = samples[..count].iter().map(own).collect();
     let Some(direct) = simulated(study, &plan, &all, progress)? else { return Ok(None) };
-    let few = &all[..count.min(HALVED)];
+    let few = &all[..count.min(TUNING.halved)];
     let Some(halved) = simulated(study, &plan.halved(), few, progress)? else { return Ok(None) };
-    let error = |(direct, halved): (&Vec<f64>, &Vec<f64>)| SAFETY * step_error(direct, halved);
+    let error = |(direct, halved): (&Vec<f64>, &Vec<f64>)| SAFETY_OF_STEPS * step_error(direct, halved);
     let whole = |values: Vec<f64>| values.iter().copied().cycle().take(samples.len()).collect::<Vec<f64>>();
     let errors = direct.rows.iter().zip(&halved.rows).map(error).collect();
     let of_numbers: Vec<f64> = direct.numbers.iter().zip(&halved.numbers).map(error).collect();

@@ -4,32 +4,17 @@
 use rayon::prelude::*;
 
 use super::rows::Rows;
+use super::tuning::TUNING;
 use crate::model::{Analysis, Requirement};
 use crate::numerics::statistics::{REPLICATES, RareShare, normal_quantile, rare_share, replicate, share_interval};
 use crate::results::YieldSummary;
 use crate::study::reduced;
 
-/// Samples of margins, at most.
-const MOST: usize = 1 << 18;
-
-/// Where fewer than these fail, samples are drawn where it fails; where fewer than many, these count if they say more.
-const FEW: usize = 400;
-const MANY: usize = 4000;
-
-/// Samples from which places that fail are looked for.
-const STARTS: usize = 12;
-
 /// What most of a requirement's name is when it stands for all of them.
 const TOGETHER: &str = "all requirements";
 
-/// Requirements whose margins at all samples are held at once.
-const AT_ONCE: usize = 16;
-
-/// Margins that are held at once in a search for points that fail.
-const MOST_MARGINS: usize = 1 << 22;
-
 /// Starts of a search, at most, for many requirements together.
-const MOST_STARTS: usize = 8 * STARTS;
+const MOST_STARTS: usize = 8 * TUNING.starts_of_places;
 
 /// Signs of the error in a margin: errors harm, none, errors help.
 const SIGNS: [f64; 3] = [1.0, 0.0, -1.0];
@@ -59,11 +44,11 @@ pub(super) fn all(rows: &Rows) -> Result<(Vec<YieldSummary>, Option<YieldSummary
     rows.stage("statistics of requirements");
     let requirements = &rows.description.requirements;
     let numbers: Vec<usize> = (0..requirements.len()).collect();
-    let fewer = rows.fewer(MOST / REPLICATES);
+    let fewer = rows.fewer(TUNING.most_samples_of_margins / REPLICATES);
     let samples: Vec<Vec<&[f64]>> = (0..REPLICATES).map(|replicate| rows.points(replicate, fewer)).collect();
     let mut together = Together::new(rows, TOGETHER, &samples);
     let mut each = Vec::with_capacity(requirements.len());
-    for group in numbers.chunks(AT_ONCE) {
+    for group in numbers.chunks(TUNING.requirements_at_once) {
         let own = kept.only(group);
         let values = sampled(rows, &own, &samples)?;
         let at_products = rows.residuals.as_ref().map(|residuals| (residuals, own.values(&residuals.samples)));
@@ -124,9 +109,9 @@ impl<'a> Together<'a> {
         let scale = mean_size(values);
         let mut order: Vec<usize> = (0..values.len() / REPLICATES).collect();
         let by_value = |a: &usize, b: &usize| values[*a].total_cmp(&values[*b]).then(a.cmp(b));
-        if order.len() > STARTS {
-            order.select_nth_unstable_by(STARTS, by_value);
-            order.truncate(STARTS);
+        if order.len() > TUNING.starts_of_places {
+            order.select_nth_unstable_by(TUNING.starts_of_places, by_value);
+            order.truncate(TUNING.starts_of_places);
         }
         order.sort_unstable_by(by_value);
         self.least.extend(order.iter().map(|&sample| (values[sample] / scale, sample)));
@@ -149,14 +134,14 @@ impl<'a> Together<'a> {
         let mut interval = [share_interval(seen[0], count)[0], share_interval(seen[2], count)[1]];
         let mut fails = 1.0 - share as f64 / count as f64;
         let (mut samples, mut method) = (count, None);
-        if count - share < MANY
+        if count - share < TUNING.many_failing
             && let Some(rare) = self.rare(margins)
         {
             let [least, most] = rare.interval.map(|fails| 1.0 - fails);
             // Where methods contradict one another, or the seen share, that share alone is stated.
             // `least` is the share that fulfils at most: what fails least leaves most.
             let agrees = least >= interval[0] && most <= interval[1];
-            if agrees && (count - share < FEW || least - most < interval[1] - interval[0]) {
+            if agrees && (count - share < TUNING.few_failing || least - most < interval[1] - interval[0]) {
                 (fails, interval) = (rare.value, [most, least]);
                 (samples, method) = (rare.samples, Some(rare.method.name().to_owned()));
             }
@@ -202,7 +187,7 @@ impl<'a> Together<'a> {
             };
             (0..samples.len()).map(of_sample).collect()
         };
-        let at_once = (MOST_MARGINS / self.errors.len()).max(1);
+        let at_once = (TUNING.most_margins_at_once / self.errors.len()).max(1);
         rare_share(&self.starts(), &|points: &[Vec<f64>]| points.chunks(at_once).flat_map(some).collect())
     }
 

@@ -8,6 +8,7 @@
 use symdiff::math;
 
 use super::laws::Laws;
+use super::tuning::TUNING;
 use crate::methods::MOST_ON_GRIDS;
 use crate::model::Description;
 use crate::numerics::Sample;
@@ -15,21 +16,10 @@ use crate::numerics::statistics::{Estimate, REPLICATES, beta_quantile};
 use crate::study::sample::{Chosen, sample};
 use crate::study::{Options, RunError};
 
-/// Fewest and most simulations, powers of two.
-const FEWEST: usize = 1 << 10;
-const MOST: usize = 1 << 16;
-
-/// Shares of the products that may differ are told to this part of the smallest share beyond a quantile that is asked
-/// for.
-const FINE: f64 = 0.25;
-
 /// Half width of a 95 % confidence interval over the standard error.
 const CONFIDENCE: f64 = 1.96;
 
-/// Numbers of simulations that may differ by more than ε, of which the best is taken for each quantile. The limits of
-/// the shares of all products have 95 % confidence together.
-const BEYOND: [usize; 5] = [0, 4, 16, 64, 128];
-const DOUBT: f64 = 0.05 / BEYOND.len() as f64;
+const DOUBT: f64 = 0.05 / TUNING.beyond_error.len() as f64;
 
 /// Simulations of the first outputs, by sample, row and output, and of reduced outputs and margins.
 pub(super) struct Residuals {
@@ -41,7 +31,7 @@ pub(super) struct Residuals {
     numbers: Vec<f64>,
     reduced: usize,
     /// Limits of the shares of products that differ by more than each ε.
-    beyond: [f64; BEYOND.len()],
+    beyond: [f64; TUNING.beyond_error.len()],
 }
 
 /// Differences of simulations from a surrogate.
@@ -53,7 +43,7 @@ pub(super) struct Residual {
     /// Their standard deviation, at the upper end of its 95 % confidence interval.
     pub deviation: f64,
     /// The largest but so many as [`Residuals::shares_around`] has shares beyond.
-    pub largest: [f64; BEYOND.len()],
+    pub largest: [f64; TUNING.beyond_error.len()],
 }
 
 impl Residuals {
@@ -90,7 +80,7 @@ impl Residuals {
             Ok::<_, RunError>(done.map(|_| (values, rows, numbers)))
         })?;
         let limit = |count: usize| beta_quantile(1.0 - DOUBT, (count + 1) as f64, (simulations - count) as f64);
-        let beyond = BEYOND.map(limit);
+        let beyond = TUNING.beyond_error.map(limit);
         let reduced = description.reduced.len();
         Ok(found.map(|(values, rows, numbers)| Self { samples, values, rows, outputs, numbers, reduced, beyond }))
     }
@@ -153,7 +143,9 @@ impl Residual {
             mean,
             sampling: CONFIDENCE * deviation / count.sqrt(),
             deviation: deviation * (1.0 + CONFIDENCE / (2.0 * count).sqrt()),
-            largest: BEYOND.map(|beyond| if mean.is_nan() { f64::NAN } else { sizes[sizes.len() - 1 - beyond] }),
+            largest: TUNING
+                .beyond_error
+                .map(|beyond| if mean.is_nan() { f64::NAN } else { sizes[sizes.len() - 1 - beyond] }),
         }
     }
 }
@@ -162,12 +154,12 @@ impl Residual {
 /// these quantiles.
 fn simulations(quantiles: &[f64]) -> usize {
     let tail = quantiles.iter().map(|share| share.min(1.0 - share)).fold(0.5, f64::min);
-    let needed = -math::ln(DOUBT) / (FINE * tail);
-    (needed.ceil() as usize).clamp(FEWEST, MOST).next_power_of_two()
+    let needed = -math::ln(DOUBT) / (TUNING.fine_share * tail);
+    (needed.ceil() as usize).clamp(TUNING.fewest_simulations, TUNING.most_simulations).next_power_of_two()
 }
 
 /// Shares around a quantile, itself included.
-pub(super) const AROUND: usize = 1 + 2 * BEYOND.len();
+pub(super) const AROUND: usize = 1 + 2 * TUNING.beyond_error.len();
 
 impl Residual {
     /// The mean of the surrogate as that of the products.

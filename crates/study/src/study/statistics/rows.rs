@@ -8,6 +8,7 @@ use super::INTERRUPTED;
 use super::causes::{Cause, causes};
 use super::laws::Laws;
 use super::residuals::{AROUND, Residual, Residuals};
+use super::tuning::TUNING;
 use crate::model::Description;
 use crate::numerics::largest;
 use crate::numerics::statistics::{Estimate, REPLICATES, Replicates};
@@ -15,39 +16,6 @@ use crate::results::{OutputStatistics, Uncertain};
 use crate::simulate::is_one_number;
 use crate::study::Options;
 use crate::study::answers::{Evaluator, Kept};
-
-/// Samples where a model asks for no number: about a million.
-const SAMPLES: usize = 1 << 20;
-
-/// Over time a share of them is enough: quantiles are bands there. The row in which an output varies most has all.
-const OVER_TIME: usize = 16;
-
-/// Numbers that all samples hold, at most.
-const MOST_NUMBERS: usize = 1 << 25;
-
-/// Samples, at most, where each costs a loop closure.
-const CLOSED: usize = 1 << 14;
-
-/// Samples of a replicate for a mean and a deviation alone, also where each costs a loop closure.
-const FEW: usize = 1 << 12;
-const FEW_CLOSED: usize = 1 << 8;
-
-/// Samples at which the polynomial through an output's own samples is held against the loop closure.
-const COMPARED: usize = 256;
-
-/// It takes the closure's place where it differs by no more than this share of the values' range, or of the stated
-/// error.
-const NEAR: (f64, f64) = (1e-4, 0.5);
-
-/// A surrogate does not follow the response if its differences from simulations vary by more than this share of its own
-/// deviation.
-const FOLLOWS: f64 = 0.5;
-
-/// Differences below this share of the mean are what least squares leave of a constant.
-const ROUNDING: f64 = 1e-8;
-
-/// A difference quotient's step, as a share of the interval's half width.
-const STEP: f64 = 1e-2;
 
 /// Samples and what evaluates them.
 pub(super) struct Rows<'a> {
@@ -84,8 +52,8 @@ impl<'a> Rows<'a> {
         kept: &'a Kept,
     ) -> Result<Self, String> {
         let evaluator = kept.evaluator().map_err(|error| error.to_string())?;
-        let asked = description.statistics.samples.unwrap_or(SAMPLES);
-        let count = asked.min(MOST_NUMBERS / laws.dimension()).max(REPLICATES);
+        let asked = description.statistics.samples.unwrap_or(TUNING.samples);
+        let count = asked.min(TUNING.most_numbers / laws.dimension()).max(REPLICATES);
         // The largest power of two that is not more.
         let count = 1 << (count / REPLICATES).ilog2();
         let samples = (0..REPLICATES).into_par_iter().map(|number| laws.samples(number, count)).collect();
@@ -153,7 +121,7 @@ impl<'a> Rows<'a> {
 
     fn of_output(&self, output: usize, of_row_done: &(dyn Fn() + Sync)) -> Result<OutputStatistics, String> {
         let of_row = |row: usize| {
-            let found = self.of_row(row, output, OVER_TIME);
+            let found = self.of_row(row, output, TUNING.over_time);
             of_row_done();
             found
         };
@@ -198,8 +166,8 @@ impl<'a> Rows<'a> {
         if let Some(residual) = residual {
             mean = residual.corrected(mean);
             errors = residual.errors(&quantiles, error, stated.time);
-            let follows =
-                residual.deviation <= FOLLOWS * deviation.value || residual.largest[0] <= ROUNDING * mean.value.abs();
+            let follows = residual.deviation <= TUNING.follows * deviation.value
+                || residual.largest[0] <= TUNING.rounding * mean.value.abs();
             resolved = follows && errors.iter().all(|error| error.is_finite());
         }
         let with_error = |own: Estimate, error: f64| Uncertain { value: own.value, sampling: own.sampling, error };
@@ -234,7 +202,7 @@ impl<'a> Rows<'a> {
     /// An output's values in a row, enough of them for mean and deviation.
     pub fn few_values(&self, row: usize, output: usize) -> Vec<f64> {
         let by_own = self.own_error(row, output, self.kept.error(output).total[row]).is_some();
-        let fewer = self.fewer(if by_own { FEW } else { FEW_CLOSED });
+        let fewer = self.fewer(if by_own { TUNING.few_samples } else { TUNING.few_closed_samples });
         (0..REPLICATES).flat_map(|replicate| self.values(row, output, replicate, fewer, by_own)).collect()
     }
 
@@ -243,7 +211,7 @@ impl<'a> Rows<'a> {
         if by_own {
             return self.kept.own_values(row, output, &self.points(replicate, fewer)).unwrap_or_default();
         }
-        let fewer = fewer.max(self.fewer(CLOSED / REPLICATES));
+        let fewer = fewer.max(self.fewer(TUNING.closed_samples / REPLICATES));
         self.evaluator.values(row, &[output], &self.points(replicate, fewer))
     }
 
@@ -252,13 +220,13 @@ impl<'a> Rows<'a> {
         if self.kept.is_polynomial(row, output) {
             return Some(0.0);
         }
-        let samples = self.points(0, self.fewer(COMPARED));
+        let samples = self.points(0, self.fewer(TUNING.compared_samples));
         let own = self.kept.own_values(row, output, &samples)?;
         let closed = self.evaluator.values(row, &[output], &samples);
         let apart = largest(own.iter().zip(&closed).map(|(own, closed)| own - closed));
         let (least, most) = closed.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), &v| (a.min(v), b.max(v)));
         // Written so that NaN does not.
-        (apart <= (NEAR.0 * (most - least)).max(NEAR.1 * stated)).then_some(apart)
+        (apart <= (TUNING.near_closure.0 * (most - least)).max(TUNING.near_closure.1 * stated)).then_some(apart)
     }
 
     /// The linearised worst case about the nominal value, and the root sum square.
@@ -279,7 +247,7 @@ impl<'a> Rows<'a> {
         let Laws { nominal, lower, upper, .. } = self.laws;
         let mut points: Vec<Vec<f64>> = Vec::with_capacity(2 * nominal.len());
         for axis in 0..nominal.len() {
-            let step = STEP * 0.5 * (upper[axis] - lower[axis]);
+            let step = TUNING.step_of_difference * 0.5 * (upper[axis] - lower[axis]);
             for side in [-step, step] {
                 let mut point = at.to_vec();
                 point[axis] = (point[axis] + side).clamp(lower[axis], upper[axis]);

@@ -1,12 +1,10 @@
 //! A stack of dimensions: sensitivities about the nominal values, and a histogram.
 
 use super::rows::Rows;
+use super::tuning::TUNING;
 use crate::model::{Analysis, Description};
 use crate::numerics::statistics::REPLICATES;
 use crate::results::{Histogram, Sensitivity};
-
-/// Intervals of a histogram.
-const INTERVALS: usize = 60;
 
 /// Whether an output is asked for both: it closes a chain, or the model has dimensions alone.
 pub(super) fn is_stack(description: &Description, output: &str) -> bool {
@@ -34,15 +32,15 @@ pub(super) fn histogram(rows: &Rows, row: usize, output: usize) -> Option<Histog
     let values: Vec<f64> =
         (0..REPLICATES).flat_map(|replicate| rows.values(row, output, replicate, 1, is_own)).collect();
     let (lower, upper) = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), &v| (a.min(v), b.max(v)));
-    let width = (upper - lower) / INTERVALS as f64;
+    let width = (upper - lower) / TUNING.intervals as f64;
     // Written so that NaN has none.
     if !(width > 0.0 && width.is_finite()) {
         return None;
     }
-    let mut shares = vec![0.0; INTERVALS];
+    let mut shares = vec![0.0; TUNING.intervals];
     let share = 1.0 / values.len() as f64;
     for value in values {
-        shares[(((value - lower) / width) as usize).min(INTERVALS - 1)] += share;
+        shares[(((value - lower) / width) as usize).min(TUNING.intervals - 1)] += share;
     }
     Some(Histogram { lower, upper, shares })
 }

@@ -5,13 +5,11 @@ use std::f64::consts::{PI, SQRT_2};
 
 use symdiff::math;
 
+use super::tuning::TUNING;
 use crate::model::{Description, Zone, ZoneLaw, ZoneShape};
 
 /// Standard deviations to the edge of a normal law.
 const EDGE: f64 = 3.0;
-
-/// Halvings of the interval of a radius: to the last bit.
-const HALVINGS: usize = 52;
 
 /// The joint law of a zone's parameters.
 pub(super) struct LawInZone {
@@ -67,7 +65,7 @@ impl LawInZone {
         let below = |r: f64| 1.0 - math::erfc(r / SQRT_2) - (2.0 / PI).sqrt() * r * math::exp(-0.5 * r * r);
         let wanted = share * below(EDGE);
         let (mut least, mut most) = (0.0, EDGE);
-        for _ in 0..HALVINGS {
+        for _ in 0..TUNING.halvings {
             let middle = 0.5 * (least + most);
             if below(middle) < wanted { least = middle } else { most = middle }
         }

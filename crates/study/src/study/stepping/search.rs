@@ -5,10 +5,6 @@ use symdiff::math;
 use crate::simulate::{Integration, Schedule};
 use crate::study::stepping::tuning::TUNING;
 
-/// Levels that are tried first; a fourth is added where steps under them would still have to be divided into more parts
-/// than `worth_fourth`.
-const LEVELS: usize = 3;
-
 /// Divides or joins a schedule's steps until their error is within its share of the tolerance. The scheme is of second
 /// order, so that the error goes as the step's square; of higher order where steps are extrapolated, which is tried
 /// where it would take fewer.
@@ -95,7 +91,7 @@ impl StepSearch {
         match self.integration {
             Integration::Plain if error > TUNING.share && parts > TUNING.worth_levels => {
                 self.plain = error;
-                self.integration = Integration::of_levels(LEVELS);
+                self.integration = Integration::of_levels(TUNING.first_levels);
             }
             Integration::Extrapolated { .. } if !gains => {
                 self.may_extrapolate = false;
@@ -104,8 +100,10 @@ impl StepSearch {
                 let wanted = self.count as f64 * self.parts_for(self.plain);
                 self.count = wanted.ceil().clamp(1.0, most as f64) as usize;
             }
-            Integration::Extrapolated { levels: LEVELS } if error > TUNING.share && parts > TUNING.worth_fourth => {
-                self.integration = Integration::of_levels(LEVELS + 1);
+            Integration::Extrapolated { levels }
+                if levels == TUNING.first_levels && error > TUNING.share && parts > TUNING.worth_fourth =>
+            {
+                self.integration = Integration::of_levels(TUNING.first_levels + 1);
             }
             _ => return false,
         }

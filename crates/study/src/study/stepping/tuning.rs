@@ -1,6 +1,6 @@
 //! Constants of the room `stepping`.
 
-use crate::syntax::tuning::tuning;
+use symdiff::constants::tuning;
 
 tuning! {
     /// The steps of a study.
@@ -68,6 +68,9 @@ tuning! {
         /// Least factor by which extrapolation has to divide the error: else the motion is not smooth enough, or too
         /// stiff.
         gain: f64 = 8.0, moves "steps, and so the time errors and the last digits";
+        /// Levels that are tried first; a fourth is added where steps under them would still have to be divided into
+        /// more parts than `worth_fourth`.
+        first_levels: usize = 3, moves "the steps that are chosen";
     }
 }
 

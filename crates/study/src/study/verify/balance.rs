@@ -1,13 +1,11 @@
 //! Balance of power along a manufactured motion: of the whole mechanism, and by effect.
 
 use super::motion::{Equations, Manufactured};
+use super::tuning::TUNING;
 use crate::assemble::System;
 use crate::compile::{OF_EFFECT, OF_WHOLE, compile_equations, observing_powers};
 use crate::numerics::{ChebyshevSeries, larger};
 use crate::results::{EffectBalance, PowerBalance};
-
-/// Instants at which powers are taken.
-const INSTANTS: usize = 64;
 
 /// Balance of a system whose powers were asked for; `None` without an effect and without motion.
 pub fn balance(
@@ -26,7 +24,7 @@ pub fn balance(
         ..EffectBalance::default()
     }));
     let (mut defect, mut size) = (0.0_f64, 0.0_f64);
-    for time in ChebyshevSeries::nodes([motion.begin, motion.end], INSTANTS) {
+    for time in ChebyshevSeries::nodes([motion.begin, motion.end], TUNING.instants_of_power) {
         let values = equations.outputs(motion, time);
         let (whole, of_effects) = values.split_at(OF_WHOLE);
         (defect, size) = (larger(defect, whole[0].abs()), larger(size, whole[1]));

@@ -10,19 +10,10 @@ use symdiff::jet::JetSpace;
 use symdiff::{Adjoints, DoubleDouble, DoubleDoubleMemory, JetMemory, Tape, Tile};
 
 use super::motion::{Equations, Manufactured};
+use super::tuning::TUNING;
 use crate::compile::{Entries, EquationsProgram, Layout, Program, Tapes};
 use crate::results::DerivativeCheck;
 use crate::simulate::Simulator;
-
-/// Instants, as shares of the motion.
-const INSTANTS: [f64; 2] = [0.31, 0.77];
-
-/// Differences are over this share of a variable's scale to both sides: their errors are its square, 1e-24, of the
-/// third derivative, and the rounding of 32 digits over it, 1e-20.
-const SHARE: f64 = 1.0 / (1_u64 << 40) as f64;
-
-/// A step of the Newton matrix is this share of the motion.
-const STEP: f64 = 1.0 / 64.0;
 
 /// How registers change together, per unit of a variable of its scale.
 type Direction = Vec<(usize, f64)>;
@@ -63,8 +54,9 @@ impl<'p> Point<'p> {
     fn by(&mut self, directions: &[Direction]) -> Matrix {
         let mut found = Matrix::zeros(self.rows.len(), directions.len());
         for (column, direction) in directions.iter().enumerate() {
-            let (after, before) = (self.at(direction, SHARE), self.at(direction, -SHARE));
-            let width = DoubleDouble::from(2.0 * SHARE);
+            let (after, before) =
+                (self.at(direction, TUNING.share_of_difference), self.at(direction, -TUNING.share_of_difference));
+            let width = DoubleDouble::from(2.0 * TUNING.share_of_difference);
             for (row, (after, before)) in after.into_iter().zip(before).enumerate() {
                 found[(row, column)] = ((after - before) / width).to_f64();
             }
@@ -127,13 +119,13 @@ fn compare(checks: &mut Vec<DerivativeCheck>, of: &str, by: &str, sizes: &[f64],
 /// Compares all derivatives along a motion.
 pub fn derivatives(simulator: &Simulator, equations: &mut Equations, motion: &Manufactured) -> Vec<DerivativeCheck> {
     let mut checks = Vec::new();
-    for share in INSTANTS {
+    for share in TUNING.instants_of_derivatives {
         let values = equations.registers(motion, motion.begin + share * motion.length());
         let scales = Scales::new(equations, motion, &values);
         of_equations(&mut checks, equations.program(), &values, &scales);
         of_rates(&mut checks, equations.program(), &values, &scales, motion.length());
         of_outputs(&mut checks, equations.program(), &values, &scales);
-        of_step(&mut checks, &simulator.program, &values, &scales, STEP * motion.length());
+        of_step(&mut checks, &simulator.program, &values, &scales, TUNING.step_of_matrix * motion.length());
     }
     checks
 }

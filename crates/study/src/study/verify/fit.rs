@@ -4,14 +4,9 @@ use std::collections::BTreeMap;
 
 use symdiff::math;
 
+use super::tuning::TUNING;
 use crate::assemble::System;
 use crate::numerics::ChebyshevSeries;
-
-/// Degree of the polynomials that follow the nominal motion.
-const FOLLOWING: usize = 8;
-
-/// Coefficients below this share of the largest are rounding, which derivatives would amplify.
-const ROUNDING: f64 = 3e-16;
 
 /// A nominal motion, row by row.
 pub struct Nominal {
@@ -41,7 +36,8 @@ pub fn series(
     }
     let is_resolved = |(index, own): (usize, &ChebyshevSeries)| own.tail() <= resolved * sizes[&group(index)];
     let all = found.iter().enumerate().all(is_resolved);
-    let chopped = |(index, own): (usize, ChebyshevSeries)| own.chopped(ROUNDING * sizes[&group(index)]);
+    let chopped =
+        |(index, own): (usize, ChebyshevSeries)| own.chopped(TUNING.rounding_of_coefficients * sizes[&group(index)]);
     all.then(|| found.into_iter().enumerate().map(chopped).collect())
 }
 
@@ -81,7 +77,7 @@ pub fn followed(
         .zip(scales.clone())
         .enumerate()
         .for_each(|(index, (own, scale))| moved(own, index, swing * scale));
-    let fit = ChebyshevSeries::fitted(span, FOLLOWING, times, &functions)?;
+    let fit = ChebyshevSeries::fitted(span, TUNING.following_degree, times, &functions)?;
     let Some(near) = near else { return Some(fit) };
     let is_near = |((own, values), scale): ((&ChebyshevSeries, &Vec<f64>), f64)| {
         let (least, most) = range(values);

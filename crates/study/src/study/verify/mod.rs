@@ -13,6 +13,7 @@ mod fit;
 mod loaded;
 mod motion;
 mod orders;
+pub(crate) mod tuning;
 mod windows;
 
 use rayon::prelude::*;
@@ -34,19 +35,10 @@ use balance::balance;
 use derivatives::derivatives;
 use fit::Nominal;
 use loaded::{loaded, observed};
-use motion::{Equations, HALVINGS, Manufactured};
+use motion::{Equations, Manufactured};
 use orders::convergence;
+use tuning::TUNING;
 use windows::later;
-
-/// Rows in which the nominal motion is followed.
-const ROWS: usize = 1 << 10;
-
-/// Where orders do not show with so many steps a row, the motion is shortened to this share, so often: fast vibrations
-/// take short steps. Where that does not help, more steps are taken along the whole motion.
-const FEW: usize = 1 << 9;
-const SHORTER: f64 = 1.0 / 16.0;
-const SHORTENINGS: i32 = 3;
-const MANY: usize = 1 << 11;
 
 /// Ways to integrate.
 const INTEGRATIONS: [Integration; 3] =
@@ -160,7 +152,7 @@ fn of_formulation(
     let redundant: Vec<usize> = mobility.redundant.iter().map(|constraint| constraint.number()).collect();
     let mut equations = Equations::new(system, compile_equations(system), &parameters, redundant);
     let whole = nominal.times.last().copied().unwrap_or(0.0);
-    let first = Manufactured::near(&nominal, &mut equations, [0.0, whole], HALVINGS);
+    let first = Manufactured::near(&nominal, &mut equations, [0.0, whole], TUNING.halvings_of_motion);
     let reached = first.as_ref().map_or(0.0, |motion| motion.end);
     let later = later(&nominal, &mut equations, reached);
     let motions = match (first, later) {
@@ -185,10 +177,10 @@ fn along(
 ) -> Result<FormulationVerification, VerifyError> {
     let mut own = found.clone();
     let whole = motion.clone();
-    for attempt in 0..=SHORTENINGS + 1 {
-        let most = if attempt > SHORTENINGS { MANY } else { FEW };
+    for attempt in 0..=TUNING.shortenings + 1 {
+        let most = if attempt > TUNING.shortenings { TUNING.many_steps } else { TUNING.few_steps };
         motion = match attempt {
-            1..=SHORTENINGS => match whole.shortened(SHORTER.powi(attempt), equations) {
+            1.. if attempt <= TUNING.shortenings => match whole.shortened(TUNING.shorter.powi(attempt), equations) {
                 Some(shorter) => shorter,
                 None => continue,
             },
@@ -249,7 +241,7 @@ fn nominal_motion(
     parameters: &Sample,
 ) -> Result<Nominal, SimulationError> {
     let duration = description.simulation.duration;
-    let row = duration / ROWS as f64;
+    let row = duration / TUNING.rows_of_nominal as f64;
     let step = match description.simulation.stepping {
         Stepping::Fixed(step) => step,
         Stepping::Tolerance(_) => row,

@@ -9,35 +9,10 @@ use symdiff::Tile;
 
 use super::NotVerified;
 use super::fit::{Nominal, followed, series};
+use super::tuning::TUNING;
 use crate::assemble::System;
 use crate::compile::{EquationsProgram, Layout, Tapes};
 use crate::numerics::ChebyshevSeries;
-
-/// Nodes of the motion.
-const NODES: usize = 96;
-
-/// Nodes of the loads: more where functions are steep.
-const LOADS: [usize; 2] = [96, 384];
-
-/// Halvings of the part of the run, where polynomials do not follow the motion or its series is not resolved.
-pub const HALVINGS: usize = 8;
-
-/// How far polynomials may be from the nominal motion, as a share of a coordinate's range.
-const NEAR: f64 = 0.02;
-
-/// Coordinates that hardly move, by less than this share of their scale, swing by as much: a motion at rest would tell
-/// nothing. The smaller ones where the first has no smooth motion: a swing may leave a clearance or the steep part of
-/// friction.
-const SWINGS: [f64; 3] = [1e-2, 1e-4, 1e-6];
-
-/// Constraints are fulfilled where residuals are less than this share of the coordinates' scale.
-const CLOSED: f64 = 1e-12;
-const CORRECTIONS: usize = 40;
-
-/// A series is resolved where its last quarter is less than this share of its size.
-const RESOLVED: f64 = 1e-11;
-/// The same for loads, which have accelerations in them.
-const LOADS_RESOLVED: f64 = 1e-9;
 
 /// A motion that fulfils the constraints, and the loads with which it fulfils the equations of motion.
 #[derive(Clone, Debug)]
@@ -134,9 +109,10 @@ impl<'s> Equations<'s> {
         if self.kept.is_empty() {
             return Some(());
         }
-        let least = CLOSED * self.system.coordinates.iter().map(|coordinate| coordinate.scale).fold(0.0, f64::max);
+        let least = TUNING.closed_constraint
+            * self.system.coordinates.iter().map(|coordinate| coordinate.scale).fold(0.0, f64::max);
         let mut before = f64::INFINITY;
-        for _ in 0..CORRECTIONS {
+        for _ in 0..TUNING.corrections {
             let gaps = self.gaps(time, q);
             let gap = gaps.amax();
             // Corrections that change nothing more are at rounding.
@@ -242,10 +218,10 @@ impl Manufactured {
         halvings: usize,
     ) -> Result<Self, NotVerified> {
         let mut why = NotVerified::NoMotion;
-        for swing in SWINGS {
+        for swing in TUNING.swings {
             for halving in 0..=halvings {
                 let span = [begin, begin + (whole - begin) * 0.5_f64.powi(halving as i32)];
-                let near = (halving < HALVINGS / 2).then_some(NEAR);
+                let near = (halving < TUNING.halvings_of_motion / 2).then_some(TUNING.near_nominal);
                 let Some(fit) = followed(nominal, span, equations.system, swing, near) else { continue };
                 match Self::of_fit(fit, span, equations) {
                     Ok(motion) => return Ok(motion),
@@ -273,14 +249,15 @@ impl Manufactured {
         let coordinates = &equations.system.coordinates;
         // Of the motion, of states, and slips behind them.
         let group = |index: usize| coordinates.get(index).map_or(2, |coordinate| usize::from(coordinate.is_state));
-        let times = ChebyshevSeries::nodes(span, NODES);
+        let times = ChebyshevSeries::nodes(span, TUNING.nodes);
         let mut values = Vec::with_capacity(times.len());
         for &time in &times {
             let mut q: Vec<f64> = fit[..n].iter().map(|own| own.at(time)).collect();
             equations.closed(time, &mut q).ok_or(NotVerified::NotClosed { time })?;
             values.push(q);
         }
-        let mut positions = series(span, &values, RESOLVED, group).ok_or(NotVerified::NotSmooth { end })?;
+        let mut positions =
+            series(span, &values, TUNING.resolved_series, group).ok_or(NotVerified::NotSmooth { end })?;
         let mut velocities: Vec<ChebyshevSeries> = positions.iter().map(ChebyshevSeries::derivative).collect();
         for (index, coordinate) in equations.system.coordinates.iter().enumerate() {
             if coordinate.is_state {
@@ -300,18 +277,18 @@ impl Manufactured {
             rates.push(v);
             changes.push(w);
         }
-        velocities = series(span, &rates, RESOLVED, group).ok_or(NotVerified::NotSmooth { end })?;
-        accelerations = series(span, &changes, LOADS_RESOLVED, group).unwrap_or(accelerations);
+        velocities = series(span, &rates, TUNING.resolved_series, group).ok_or(NotVerified::NotSmooth { end })?;
+        accelerations = series(span, &changes, TUNING.loads_resolved, group).unwrap_or(accelerations);
         let multipliers = fit[2 * n..].to_vec();
         let mut motion =
             Self { begin, end, positions, velocities, accelerations, multipliers, loads: vec![], slips: vec![], fit };
-        for nodes in LOADS {
+        for nodes in TUNING.nodes_of_loads {
             let times = ChebyshevSeries::nodes(span, nodes);
             let values: Vec<Vec<f64>> = times.iter().map(|&time| equations.residuals(&motion, time)).collect();
             if values.iter().flatten().any(|value| !value.is_finite()) {
                 return Err(NotVerified::NotFinite { end });
             }
-            if let Some(mut all) = series(span, &values, LOADS_RESOLVED, group) {
+            if let Some(mut all) = series(span, &values, TUNING.loads_resolved, group) {
                 motion.slips = all.split_off(n);
                 motion.loads = all;
                 return Ok(motion);

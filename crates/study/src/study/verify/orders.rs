@@ -1,17 +1,11 @@
 //! Observed orders: the errors of a manufactured motion with steps of half the length, again and again.
 
 use super::motion::Manufactured;
+use super::tuning::TUNING;
 use crate::assemble::System;
 use crate::numerics::{ChebyshevSeries, Sample, larger};
 use crate::results::{Convergence, Quantity};
 use crate::simulate::{Integration, Observed, Schedule, SimulationError, Simulator, Steps, integrator};
-
-/// Intervals between the rows in which errors are taken.
-const ROWS: usize = 4;
-
-/// Errors below these shares of a quantity's size are rounding's, whatever the model: of positions, velocities,
-/// accelerations and reactions.
-const ROUNDING: [f64; 4] = [1e-13, 1e-12, 1e-10, 1e-10];
 
 /// The values of a group of outputs, and how large their errors may count.
 struct Group<'m> {
@@ -61,7 +55,7 @@ fn groups<'m>(system: &System, motion: &'m Manufactured) -> Vec<Group<'m>> {
             Group { quantity, first, exact, of, scales, rounding }
         };
     let rate = 1.0 / motion.length();
-    let [position, velocity, acceleration, reaction] = ROUNDING;
+    let [position, velocity, acceleration, reaction] = TUNING.rounding_of_errors;
     let all = [
         group(Quantity::Positions, 0, &motion.positions, of_motion.clone(), 1.0, position),
         group(Quantity::Velocities, n, &motion.velocities, of_motion.clone(), rate, velocity),
@@ -94,8 +88,9 @@ pub fn convergence(
         if interrupted() {
             return Err(SimulationError::Interrupted);
         }
-        let step = motion.length() / (ROWS * per_row) as f64;
-        let schedule = Schedule::fixed(motion.length(), step, motion.length() / ROWS as f64).taken(integration);
+        let step = motion.length() / (TUNING.rows_of_errors * per_row) as f64;
+        let schedule =
+            Schedule::fixed(motion.length(), step, motion.length() / TUNING.rows_of_errors as f64).taken(integration);
         let rows = simulated(simulator, &nominal, &schedule)?;
         per_row *= 2;
         let Some(rows) = rows else {

@@ -3,6 +3,7 @@
 
 use super::DoubleDouble;
 use crate::expr::{Binary, Spline, Unary};
+use crate::tuning::TUNING;
 
 /// π/2 in two parts, and the rest of it.
 const HALF_PI: DoubleDouble = DoubleDouble { high: std::f64::consts::FRAC_PI_2, low: 6.123_233_995_736_766e-17 };
@@ -17,9 +18,6 @@ const TERMS_OF_EXP: u32 = 10;
 
 /// Highest power in the series of sine and cosine, up to π/4.
 const TERMS_OF_WAVES: u32 = 30;
-
-/// Largest whole exponent that is multiplied out.
-const MOST_FACTORS: f64 = 1024.0;
 
 /// `function(a)`.
 pub fn unary(function: Unary, a: DoubleDouble) -> DoubleDouble {
@@ -150,7 +148,7 @@ fn tanh(a: DoubleDouble) -> DoubleDouble {
 }
 
 fn power(a: DoubleDouble, b: DoubleDouble) -> DoubleDouble {
-    let is_whole = b.low == 0.0 && b.high.fract() == 0.0 && b.high.abs() <= MOST_FACTORS;
+    let is_whole = b.low == 0.0 && b.high.fract() == 0.0 && b.high.abs() <= TUNING.factors_of_double_double;
     if is_whole {
         let (mut value, mut square, mut rest) = (DoubleDouble::ONE, a, b.high.abs() as u32);
         while rest > 0 {

@@ -16,9 +16,7 @@ use super::{HALF_UNIT, ModelScratch, ModelSpace, Norms, up};
 use crate::eval::enclosed;
 use crate::eval::interval::Interval;
 use crate::expr::{Binary, Unary};
-
-/// Largest whole power that is multiplied out.
-const MOST_FACTORS: f64 = 64.0;
+use crate::tuning::TUNING;
 
 /// π/2, which lies between neighbours of its rounded value.
 fn quarter_turn() -> Interval {
@@ -179,7 +177,7 @@ impl ModelSpace {
         }
         let is_whole = is_point(exponent) && exponent.lower().fract() == 0.0;
         self.with_spare(scratch, |first, second, scratch| {
-            if !is_whole || exponent.magnitude() > MOST_FACTORS {
+            if !is_whole || exponent.magnitude() > TUNING.factors_of_model {
                 self.log(a, first, scratch);
                 self.mul(b, first, second);
                 return self.exp(second, out, scratch);

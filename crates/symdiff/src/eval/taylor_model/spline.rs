@@ -6,16 +6,14 @@
 use super::{ModelScratch, ModelSpace, up};
 use crate::eval::interval::Interval;
 use crate::expr::{Spline, SplinePiece, cubic_about, cubic_derivative};
-
-/// Most pieces that a box may reach.
-const MOST_PIECES: usize = 64;
+use crate::tuning::TUNING;
 
 impl ModelSpace {
     /// `out` = the derivative of this order of a table at a; unknown where the box reaches too many pieces. The radius
     /// has the jumps at knots that rounding leaves ([`Spline::rounding_jumps`]).
     pub(super) fn spline(&self, spline: Spline, order: u8, a: &[f64], out: &mut [f64], scratch: &mut ModelScratch) {
         let range = self.range(a);
-        let pieces = spline.pieces_over(range, MOST_PIECES);
+        let pieces = spline.pieces_over(range, TUNING.pieces_of_spline);
         let of_middle = pieces.iter().find(|piece| a[0] < piece.to);
         let Some(own) = of_middle.or(pieces.last()) else { return self.unknown(out) };
         self.with_spare(scratch, |from, product, _| {

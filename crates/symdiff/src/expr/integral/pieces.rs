@@ -4,9 +4,7 @@ use rustc_hash::FxHashMap;
 
 use super::super::graph::Graph;
 use super::super::node::{Binary, Expr, Node, Unary};
-
-/// Conditions that are joined in one.
-const MOST_CONDITIONS: usize = 8;
+use crate::tuning::TUNING;
 
 impl Graph {
     /// ∫ `value` where `condition`, a + b t with a number b, is positive (`Select`) or is not (`SelectElse`).
@@ -89,9 +87,9 @@ impl Graph {
                 _ => return None,
             }
         }
-        let held =
-            (0..1usize << conditions.len().min(MOST_CONDITIONS)).map(|held| self.truth_where(of, &conditions, held));
-        (conditions.len() <= MOST_CONDITIONS).then(|| held.into_iter().all(|value| value == 0.0 || value == 1.0))
+        let held = (0..1usize << conditions.len().min(TUNING.most_conditions))
+            .map(|held| self.truth_where(of, &conditions, held));
+        (conditions.len() <= TUNING.most_conditions).then(|| held.into_iter().all(|value| value == 0.0 || value == 1.0))
     }
 
     /// The value of an expression of conditions of which those hold whose bits are set.

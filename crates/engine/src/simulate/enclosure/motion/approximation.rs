@@ -5,18 +5,10 @@
 use symdiff::JetMemory;
 
 use super::super::EnclosureError;
+use super::tuning::TUNING;
 use crate::certificate::matrix::Models;
 use crate::certificate::spaces::{Cell, Space, matrix_at};
 use crate::compile::EquationsProgram;
-
-/// Most iterations; each makes one more power of τ right.
-const MAX_ITERATIONS: usize = 40;
-
-/// Change of the accelerations, relative to their size, that ends the iteration.
-const CONVERGED: f64 = 2e-16;
-
-/// Change from which on the iteration ends where it no longer shrinks: rounding.
-const NEAR: f64 = 1e-9;
 
 /// Positions, velocities, accelerations and multipliers: over a cell polynomials of (τ, ξ), at its start of ξ.
 #[derive(Clone, Debug)]
@@ -75,7 +67,7 @@ impl Approximation {
         let (n, m) = (self.q.rows, self.lambda.rows);
         let mut residual = Models::zero(&space.cell, n + m, 1);
         let mut last = f64::INFINITY;
-        for _ in 0..MAX_ITERATIONS {
+        for _ in 0..TUNING.max_iterations {
             self.put(program, |register, model| memory.jet_mut(register).copy_from_slice(&model[..jets.len()]));
             memory.run(program.residual());
             memory.run(program.rates());
@@ -100,7 +92,9 @@ impl Approximation {
             if !change.is_finite() {
                 return Err(EnclosureError::Unproven);
             }
-            if change <= CONVERGED * size || (change <= NEAR * size && change > 0.5 * last) {
+            if change <= TUNING.converged_accelerations * size
+                || (change <= TUNING.near_convergence * size && change > 0.5 * last)
+            {
                 return Ok(());
             }
             last = change;

@@ -4,30 +4,9 @@ use symdiff::Interval;
 
 use super::approximation::Approximation;
 use super::proof::Proven;
+use super::tuning::TUNING;
 use crate::certificate::frame::Frame;
 use crate::certificate::spaces::Cell;
-
-/// Defect of the accelerations, relative to their size, above which a cell is halved.
-const LARGE_DEFECT: f64 = 1e-12;
-
-/// The same above which a knot must be in the cell, where the equations have any.
-pub(super) const HARMFUL_DEFECT: f64 = 1e-9;
-
-/// Last terms in τ of the accelerations, relative to their size, above which cells may be very short.
-pub(super) const STIFF_TAIL: f64 = 1e-9;
-
-/// Last terms in τ, relative to the accelerations, below which they do not matter.
-const SMALL_DEFECT: f64 = 1e-13;
-
-/// Factor by which errors make the distance larger over a cell, above which the cell is halved.
-const LARGE_GAIN: f64 = 1.05;
-
-/// The same below which the next cell is twice as long.
-const SMALL_GAIN: f64 = 1.01;
-
-/// A cell of half the length is worth its proof where its gain is smaller by this factor: one of two such cells has at
-/// most half.
-const HELPFUL: f64 = 0.3;
 
 /// A cell that is proven.
 #[derive(Debug)]
@@ -68,24 +47,24 @@ pub(super) struct Next {
 impl Next {
     /// Whether shorter cells may be better.
     pub fn is_long(&self) -> bool {
-        self.is_coarse() || self.gain > LARGE_GAIN
+        self.is_coarse() || self.gain > TUNING.large_gain
     }
 
     /// Whether a shorter cell has a smaller defect, and needs it.
     fn is_coarse(&self) -> bool {
-        let falls = self.tails[0] > SMALL_DEFECT && self.tails[1] < 0.1 * self.tails[0];
-        self.passes_knot || (self.defect > LARGE_DEFECT && falls)
+        let falls = self.tails[0] > TUNING.small_defect && self.tails[1] < 0.1 * self.tails[0];
+        self.passes_knot || (self.defect > TUNING.large_defect && falls)
     }
 
     /// Whether two cells of half the length are better than one.
     pub fn is_better_than(&self, larger: &Self) -> bool {
         let by_defect = larger.is_coarse() && self.defect < 0.7 * larger.defect;
-        by_defect || (larger.gain > LARGE_GAIN && self.gain - 1.0 < HELPFUL * (larger.gain - 1.0))
+        by_defect || (larger.gain > TUNING.large_gain && self.gain - 1.0 < TUNING.helpful_halving * (larger.gain - 1.0))
     }
 
     /// Whether a cell of twice the length is not coarse, by the polynomials.
     pub fn may_be_doubled(&self) -> bool {
-        let is_fine = self.tails[2] < SMALL_DEFECT || self.tails[2] < 10.0 * self.tails[0];
-        is_fine && self.gain < SMALL_GAIN
+        let is_fine = self.tails[2] < TUNING.small_defect || self.tails[2] < 10.0 * self.tails[0];
+        is_fine && self.gain < TUNING.small_gain
     }
 }

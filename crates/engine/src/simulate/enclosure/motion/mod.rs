@@ -15,6 +15,7 @@
 mod approximation;
 mod cells;
 mod proof;
+pub(crate) mod tuning;
 
 use symdiff::taylor_model::{ModelSpace, up};
 use symdiff::{Interval, JetMemory, ModelMemory};
@@ -26,24 +27,9 @@ use crate::certificate::spaces::{Cell, Space};
 use crate::certificate::{Piece, ProvenCell};
 use crate::compile::{EquationsProgram, Tapes};
 use approximation::Approximation;
-use cells::{HARMFUL_DEFECT, Next, Passed, STIFF_TAIL};
+use cells::{Next, Passed};
 use proof::{Claim, inverse_about};
-
-/// Half the length of the first cell that is tried, s.
-const FIRST_HALF: f64 = 1.0 / 64.0;
-
-/// Half the length of the longest cell, s.
-const LONGEST_HALF: f64 = 0.25;
-
-/// Half the length below which a cell is not halved, s; below the first one it is where its polynomials in time are far
-/// from the motion.
-const SHORTEST_HALVES: [f64; 2] = [1.0 / 32768.0, 1.0 / 1_048_576.0];
-
-/// Bound of positions' remainders, relative to their scale, above which smaller boxes cost less than shorter cells.
-const LARGE_REMAINDER: f64 = 1e-5;
-
-/// Last terms in ξ, relative to the size of the velocities, above which the box is too wide for the order.
-const LARGE_TAIL: f64 = 1e-8;
+use tuning::TUNING;
 
 /// Shapes of the polynomials of a motion's enclosure.
 #[derive(Clone, Debug)]
@@ -159,7 +145,7 @@ impl<'s> MotionEnclosure<'s> {
             start,
             frame,
             time: 0.0,
-            half: FIRST_HALF,
+            half: TUNING.first_half,
             is_stiff: false,
             last: None,
             since: Vec::new(),
@@ -230,7 +216,7 @@ impl<'s> MotionEnclosure<'s> {
         loop {
             let cell = Cell { middle: self.time + self.half, half: self.half };
             let attempt = self.attempt(cell);
-            let [shortest, of_stiff] = SHORTEST_HALVES;
+            let [shortest, of_stiff] = TUNING.shortest_halves;
             let can_halve = self.half > if self.is_stiff { of_stiff } else { shortest };
             let may_help = match (attempt, &best) {
                 (Ok(next), Some(before)) if !next.is_better_than(before) => before.passes_knot,
@@ -279,7 +265,7 @@ impl<'s> MotionEnclosure<'s> {
         let size = |models: &Models| (0..models.rows).map(|row| fine.cell.bound(models.at(row, 0))).fold(0.0, f64::max);
         let n = approximation.q.rows;
         let tail = (0..n).map(|row| fine.last_in_parameters(approximation.v.at(row, 0))).fold(0.0, f64::max);
-        if tail > LARGE_TAIL * size(&approximation.v) {
+        if tail > TUNING.large_tail * size(&approximation.v) {
             return Err(EnclosureError::TooWide);
         }
         let terms = |of_power: f64| {
@@ -287,7 +273,7 @@ impl<'s> MotionEnclosure<'s> {
             rows.fold(0.0, f64::max) / (size(&approximation.w) + f64::MIN_POSITIVE)
         };
         let tails = [1.0, 0.5, 2.0].map(terms);
-        self.is_stiff = tails[0] > STIFF_TAIL;
+        self.is_stiff = tails[0] > TUNING.stiff_tail;
         let jump = self.jump(&approximation);
         let at_start = self.frame.error(&coarse.box_of);
         let claim = Claim {
@@ -311,8 +297,8 @@ impl<'s> MotionEnclosure<'s> {
         let errors = frame.error(&coarse.box_of);
         let defect =
             proven.defect[n..].iter().copied().fold(0.0, f64::max) / (size(&approximation.w) + f64::MIN_POSITIVE);
-        let passes_knot = self.program.has_knots && defect > HARMFUL_DEFECT;
-        if !self.scales.iter().zip(errors).all(|(scale, error)| error <= LARGE_REMAINDER * scale) {
+        let passes_knot = self.program.has_knots && defect > TUNING.harmful_defect;
+        if !self.scales.iter().zip(errors).all(|(scale, error)| error <= TUNING.large_remainder * scale) {
             return Err(if passes_knot { EnclosureError::Unproven } else { EnclosureError::TooWide });
         }
         let gain = frame.gain();
@@ -329,7 +315,7 @@ impl<'s> MotionEnclosure<'s> {
         // Cells begin at multiples of their length.
         self.half = cell.half;
         let doubled = 2.0 * self.half;
-        if is_easy && doubled <= LONGEST_HALF && (self.time / (2.0 * doubled)).fract() == 0.0 {
+        if is_easy && doubled <= TUNING.longest_half && (self.time / (2.0 * doubled)).fract() == 0.0 {
             self.half = doubled;
         }
         self.piece.cells.push(ProvenCell {

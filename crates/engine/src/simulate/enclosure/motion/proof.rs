@@ -6,19 +6,13 @@ use symdiff::taylor_model::{ModelSpace, up};
 use super::super::EnclosureError;
 use super::super::start;
 use super::approximation::Approximation;
+use super::tuning::TUNING;
 use crate::certificate::flow::{Accelerations, Flow, kinematic_defect, of_first_order};
 use crate::certificate::majorant::bound;
 use crate::certificate::matrix::{Bounds, Models};
 use crate::certificate::spaces::{Cell, Space, truncate};
 use crate::compile::EquationsProgram;
 use crate::numerics::larger;
-
-/// Most tubes that are tried.
-const TUBES: usize = 4;
-
-/// Factor from the bound that one tube gave to the next tube. Much more than is needed here, for a checker whose bounds
-/// are larger; distances are far too small for it to matter to the derivatives.
-const WIDER: f64 = 4.0;
 
 /// What holds over a cell for every ξ, for the distance e = y − ŷ of a motion y from the approximation ŷ, y = (q, v).
 #[derive(Clone, Debug)]
@@ -69,8 +63,9 @@ impl Claim<'_> {
         let kinematic = kinematic_defect(self.fine, self.cell, q, v, w);
         let entry: Vec<f64> = self.at_start.iter().zip(self.jump).map(|(a, b)| up(a + b)).collect();
         let guess = slopes.and_then(|slopes| bound(slopes, &entry, duration, &kinematic));
-        let mut tube: Vec<f64> = guess.unwrap_or_else(|| entry.clone()).iter().map(|e| WIDER * e + 1e-14).collect();
-        for _ in 0..TUBES {
+        let mut tube: Vec<f64> =
+            guess.unwrap_or_else(|| entry.clone()).iter().map(|e| TUNING.wider_tube * e + 1e-14).collect();
+        for _ in 0..TUNING.most_tubes {
             let linear = self.linearise(coarse, &tube, &residual)?;
             let missed = kinematic.iter().enumerate().map(|(row, &rate)| match row.checked_sub(n) {
                 Some(row) => up(rate + linear.missed[row]),
@@ -85,7 +80,7 @@ impl Claim<'_> {
                 let flow = flow.ok_or(EnclosureError::Unproven)?;
                 return Ok(Proven { flow, defect, slopes, tube });
             }
-            tube = reached.iter().map(|e| WIDER * e + 1e-14).collect();
+            tube = reached.iter().map(|e| TUNING.wider_tube * e + 1e-14).collect();
         }
         Err(EnclosureError::Unproven)
     }

@@ -4,12 +4,14 @@
 //! has. Where the values jump it does not rise above them.
 
 mod piece;
+pub(crate) mod tuning;
 mod zone;
 
 use std::ops::Range;
 
 use piece::Piece;
 use serde::{Deserialize, Serialize};
+use tuning::TUNING;
 use zone::Zone;
 
 /// Quantity accumulated of an output.
@@ -180,13 +182,10 @@ fn is_last(channel: &Channel, end: f64) -> bool {
     channel.to.is_infinite() || channel.to <= end * (1.0 + 1e-12)
 }
 
-/// Places of a path that are looked at between two steps.
-const OF_PATH: usize = 4;
-
 fn add_path(zone: &mut Zone, x: &Piece, y: &Piece, channel: &Channel) {
     if let Some(Range { start: begin, end }) = y.part(channel.from, channel.to) {
-        for index in 0..=OF_PATH {
-            let share = begin + (end - begin) * index as f64 / OF_PATH as f64;
+        for index in 0..=TUNING.places_of_path {
+            let share = begin + (end - begin) * index as f64 / TUNING.places_of_path as f64;
             zone.add([x.at(share), y.at(share)]);
         }
     }

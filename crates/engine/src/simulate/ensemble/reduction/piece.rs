@@ -2,16 +2,11 @@
 
 use std::ops::Range;
 
+use super::tuning::TUNING;
 use crate::numerics::bisected;
 
 /// A place in a piece, as a share of its length, and the value there.
 pub(super) type Place = (f64, f64);
-
-/// Bisections of a crossing: to the last bit of a share.
-const BISECTIONS: usize = 52;
-
-/// A peak may rise above the piece's ends by so many times what the parabolas through three of the four values say.
-const RISES: f64 = 1.5;
 
 /// The values between two steps.
 #[derive(Clone, Copy, Debug)]
@@ -96,7 +91,7 @@ impl Piece {
 
     /// Where the value becomes positive on the way from a share at which it is negative to one at which it is not.
     fn crossing(&self, below: f64, above: f64) -> f64 {
-        bisected(below, above, BISECTIONS, |share| self.at(share) >= 0.0)
+        bisected(below, above, TUNING.bisections_of_crossing, |share| self.at(share) >= 0.0)
     }
 
     /// The integral of a function of the value over a part, by Gauss' rule of four nodes: exact up to degree 7.
@@ -129,7 +124,7 @@ impl Piece {
             return None;
         }
         let (share, rise) = rise(&self.cubic)?;
-        Some((share, sign * (ends + rise.min(RISES * most))))
+        Some((share, sign * (ends + rise.min(TUNING.rise_of_peak * most))))
     }
 }
 

@@ -1,10 +1,6 @@
 //! Straightness of a path: the width of the narrowest strip that holds it (minimum zone, ISO 1101).
 
-/// Points before they are reduced to their convex hull, at least.
-const FEW: usize = 64;
-
-/// Rounding of a point beside the path's greatest coordinate.
-const ROUNDING: f64 = 8.0 * f64::EPSILON;
+use super::tuning::TUNING;
 
 /// A path, of which the convex hull is kept.
 #[derive(Clone, Debug, Default)]
@@ -20,7 +16,7 @@ impl Zone {
         self.points.push(point);
         // A round path has a large hull: as many points come as it has, so that a point costs the same however many
         // there are.
-        if self.points.len() > FEW.max(2 * self.hull) {
+        if self.points.len() > TUNING.fewest_hull_points.max(2 * self.hull) {
             self.points = hull(&mut self.points);
             self.hull = self.points.len();
         }
@@ -36,7 +32,7 @@ impl Zone {
         let narrowest = narrowest(&hull);
         // A line straight to rounding is straight.
         let size = hull.iter().flatten().fold(0.0, |size: f64, number| size.max(number.abs()));
-        if narrowest <= ROUNDING * size { 0.0 } else { narrowest }
+        if narrowest <= TUNING.rounding_of_zone * size { 0.0 } else { narrowest }
     }
 }
 

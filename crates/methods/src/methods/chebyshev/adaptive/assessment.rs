@@ -1,7 +1,8 @@
 //! How far off the surrogate of a sub-box is: at nodes that are new to it, and at validation samples.
 
 use super::Adaptation;
-use crate::methods::chebyshev::composition::{BLOCK, Composer, NodeMotions, Row};
+use super::tuning::TUNING;
+use crate::methods::chebyshev::composition::{self, Composer, NodeMotions, Row};
 use crate::methods::chebyshev::detail::Detail;
 use crate::methods::chebyshev::estimator::RangeEstimator;
 use crate::methods::chebyshev::range_search::Previous;
@@ -11,9 +12,6 @@ use crate::methods::ensemble::{Ensemble, EnsembleError, Observed, lines};
 use crate::methods::kept::KeptRow;
 use crate::methods::result::Estimate;
 use crate::numerics::{SAFETY_OF_SURROGATE, Surrogate, largest};
-
-/// Rows in which the error at new nodes is looked at, which only tells what to add next.
-const AT_NODES: usize = 16;
 
 impl Adaptation<'_> {
     /// Values a row and sample of what is observed.
@@ -32,7 +30,7 @@ impl Adaptation<'_> {
     ) -> Result<Vec<f64>, EnsembleError> {
         let own_stride = self.lines() * nodes.len();
         let reached = self.goal.rows().min(sub_box.rows()).min(own.len() / own_stride.max(1));
-        let step = self.every.max(reached.div_ceil(AT_NODES));
+        let step = self.every.max(reached.div_ceil(TUNING.rows_at_nodes));
         let rows: Vec<usize> = (0..reached).rev().step_by(step).collect();
         let goal = &self.goal;
         let look = |index: usize, composed: &Row, _: &mut Previous| {
@@ -50,7 +48,7 @@ impl Adaptation<'_> {
             self.ensemble,
             sub_box,
             surrogate,
-            Looks { rows: &rows, velocities: false, block: BLOCK },
+            Looks { rows: &rows, velocities: false, block: composition::tuning::TUNING.rows_in_order },
             look,
         )?;
         Ok((0..nodes.len()).map(|node| largest(by_row.iter().map(|errors| errors[node]))).collect())
@@ -105,7 +103,7 @@ impl Adaptation<'_> {
             self.ensemble,
             sub_box,
             &surrogate,
-            Looks { rows, velocities: false, block: BLOCK },
+            Looks { rows, velocities: false, block: composition::tuning::TUNING.rows_in_order },
             look,
         )
     }
@@ -134,7 +132,8 @@ impl Adaptation<'_> {
             (found, kept)
         };
         // Errors alone are asked for of rows that are not neighbours.
-        let (velocities, block) = if detail == Detail::Errors { (false, 1) } else { (true, BLOCK) };
+        let (velocities, block) =
+            if detail == Detail::Errors { (false, 1) } else { (true, composition::tuning::TUNING.rows_in_order) };
         let looks = Looks { rows, velocities, block };
         let found = rows_of(&mut self.composer, self.ensemble, sub_box, &surrogate, looks, look)?;
         let (found, kept): (Vec<Vec<Estimate>>, Vec<Option<KeptRow>>) = found.into_iter().unzip();

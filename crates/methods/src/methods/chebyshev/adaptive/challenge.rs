@@ -9,20 +9,12 @@ use std::borrow::Cow;
 
 use super::Adaptation;
 use super::assessment::{Looks, rows_of};
+use super::tuning::TUNING;
 use crate::methods::chebyshev::composition::Row;
 use crate::methods::chebyshev::range_search::Previous;
 use crate::methods::chebyshev::sub_box::SubBox;
 use crate::methods::ensemble::EnsembleError;
 use crate::numerics::{Surrogate, spread};
-
-/// Samples where outputs are least or largest, at most; so many times the parameters where these are many, and one for
-/// so many nodes where these are: a polynomial of high degree has its tips anywhere.
-const ENDS: usize = 16;
-const ENDS_A_PARAMETER: usize = 2;
-const NODES_AN_END: usize = 4;
-
-/// Two ends are one where they are nearer to each other than this share of what nodes are apart.
-const NEAR: f64 = 0.5;
 
 impl Adaptation<'_> {
     /// Simulations that the next challenge of a sub-box may take.
@@ -84,7 +76,7 @@ impl Adaptation<'_> {
 }
 
 fn most_ends(sub_box: &SubBox) -> usize {
-    ENDS.max(ENDS_A_PARAMETER * sub_box.domain.dimension()).max(sub_box.grid.len() / NODES_AN_END)
+    TUNING.ends.max(TUNING.ends_a_parameter * sub_box.domain.dimension()).max(sub_box.grid.len() / TUNING.nodes_an_end)
 }
 
 /// How far apart points are for a sub-box's surrogate.
@@ -111,7 +103,7 @@ impl Scale {
         // An axis that matters little may still be off along it by more than is allowed: its nodes say how much.
         let weight = |own: f64, degree: u8| weight(own).max(f64::from(degree) / f64::from(highest));
         let weights = first.into_iter().zip(degrees).map(|(own, degree)| weight(own, degree)).collect();
-        Self { weights, near: NEAR / f64::from(highest) }
+        Self { weights, near: TUNING.near_end / f64::from(highest) }
     }
 
     fn distance(&self, a: &[f64], b: &[f64]) -> f64 {

@@ -10,6 +10,7 @@
 
 mod assessment;
 mod challenge;
+pub(crate) mod tuning;
 
 use std::borrow::Cow;
 
@@ -27,23 +28,7 @@ use crate::methods::result::Estimate;
 use crate::methods::validation::{Validation, ValidationTable};
 use crate::numerics::clock::Instant;
 use crate::numerics::{EMPTY, ParameterBox, Range, SAFETY_OF_SURROGATE, SparseGrid, Surrogate, largest, union};
-
-/// Indices are added whose expected surplus is at least this share of the largest.
-const ADDED: f64 = 0.3;
-
-/// Nodes that are simulated together, at least, and how many of those that are there may be as many as all new ones.
-const TOGETHER: usize = 8;
-const GROWTH: usize = 8;
-
-/// One in so many simulations of the budget, at most, is reserved for new validation samples.
-const KEPT_FREE: usize = 2;
-
-/// A surrogate that a value contradicts which was simulated elsewhere is refined until its nodes have grown by this
-/// share.
-const DOUBTED: usize = 2;
-
-/// Rows in which a surrogate is looked at between rounds.
-const CHECKED: usize = 48;
+use tuning::TUNING;
 
 /// What a surrogate has to meet.
 pub(super) struct Goal {
@@ -131,7 +116,7 @@ pub(super) fn search(
 impl<'r> Adaptation<'r> {
     /// Before the first simulation.
     pub fn new(ensemble: &'r dyn Ensemble, goal: Goal, validation: &'r Validation, keep: bool) -> Self {
-        let every = goal.rows().div_ceil(CHECKED).max(1);
+        let every = goal.rows().div_ceil(TUNING.checked_rows).max(1);
         Self {
             ensemble,
             goal,
@@ -190,7 +175,7 @@ impl<'r> Adaptation<'r> {
             boxes[worst].challenged = false;
             let reserve = boxes.iter().map(Self::reserve).sum();
             if doubted {
-                let enough = boxes[worst].grid.len() + boxes[worst].grid.len().div_ceil(DOUBTED);
+                let enough = boxes[worst].grid.len() + boxes[worst].grid.len().div_ceil(TUNING.doubted);
                 while boxes[worst].grid.len() < enough && !self.is_spent() {
                     let before = boxes[worst].grid.len();
                     self.refine(&mut boxes[worst], reserve)?;
@@ -299,9 +284,9 @@ impl<'r> Adaptation<'r> {
     /// samples.
     fn refine(&mut self, sub_box: &mut SubBox, reserve: usize) -> Result<(), EnsembleError> {
         let left = self.goal.budget.simulations.saturating_sub(self.goal.spent);
-        let room = left.saturating_sub(reserve.min(self.goal.budget.simulations / KEPT_FREE));
-        let wanted = TOGETHER.max(sub_box.grid.len() / GROWTH);
-        let mut generations = sub_box.next(ADDED, wanted);
+        let room = left.saturating_sub(reserve.min(self.goal.budget.simulations / TUNING.kept_free));
+        let wanted = TUNING.together.max(sub_box.grid.len() / TUNING.growth);
+        let mut generations = sub_box.next(TUNING.added, wanted);
         let mut count = 0;
         for added in &mut generations {
             self.exhausted |= added.len() > room - count;

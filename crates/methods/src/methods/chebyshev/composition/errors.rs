@@ -2,19 +2,13 @@
 
 use std::convert::Infallible;
 
+use super::tuning::TUNING;
 use super::{Found, Row};
+use crate::methods;
 use crate::methods::chebyshev::range_search::{RangeSearch, block, extent};
 use crate::methods::expansion::Moves;
-use crate::methods::result::BETWEEN_KINKS;
 use crate::methods::validation::{HeldOut, ValidationTable};
 use crate::numerics::{Extent, Extremes, extremes_near, largest, step_error, surrogate_error, truncation};
-
-/// So many independent coordinates are moved one by one.
-const MOST_MOVED: usize = 4;
-
-/// What moves an end by less than this share of the range's width moves the place of the extreme by so little that it
-/// does not matter.
-const FAR: f64 = 0.1;
 
 impl Row<'_> {
     /// The part of an output's error that no sample makes smaller: that of the search for ends at jumps.
@@ -70,7 +64,7 @@ impl Row<'_> {
             if expanded[output] {
                 let own = self.own_polynomials(&[output], points);
                 let tail = truncation(self.surrogate.basis(), self.own_coefficients(output));
-                let between = if self.ensemble.has_kink(output) { BETWEEN_KINKS } else { 1.0 };
+                let between = if self.ensemble.has_kink(output) { methods::tuning::TUNING.between_kinks } else { 1.0 };
                 return found.gap + largest([between * surrogate_error(&own, &simulated), tail]);
             }
             let compared = self.compared_extreme(output, points, &simulated);
@@ -87,7 +81,7 @@ impl Row<'_> {
         if !self.ensemble.is_extreme(output) {
             return f64::INFINITY;
         }
-        BETWEEN_KINKS * surrogate_error(&self.predict_some(&[output], points), simulated)
+        methods::tuning::TUNING.between_kinks * surrogate_error(&self.predict_some(&[output], points), simulated)
     }
 
     /// The time steps' errors of the outputs' ranges: how far those of the coordinates, from samples with the steps as
@@ -145,7 +139,7 @@ impl Row<'_> {
     /// output. Many are moved together: all one way, or every other one against the rest. Where that moves an end by
     /// little, the extreme stays where it is, to first order; else it is searched for again.
     fn moved(&self, range_search: &RangeSearch, found: &[Extent], moves: &[Moves]) -> Vec<f64> {
-        let one_by_one = moves.len() <= MOST_MOVED;
+        let one_by_one = moves.len() <= TUNING.most_moved;
         let rounds = if one_by_one { moves.len() } else { 2 };
         let weight = |round: usize, index: usize| match (one_by_one, index == round) {
             (true, is_its_turn) => f64::from(u8::from(is_its_turn)),
@@ -161,7 +155,7 @@ impl Row<'_> {
         for (ways, at_extremes) in ways.chunks_exact(2).zip(at_extremes.chunks_exact(2)) {
             let mut own = vec![0.0; found.len()];
             for (way, at_extremes) in ways.iter().zip(at_extremes) {
-                let moves_far = |&output: &usize| at_extremes[output] > FAR * found[output].range.width();
+                let moves_far = |&output: &usize| at_extremes[output] > TUNING.far * found[output].range.width();
                 let far: Vec<usize> = (0..found.len()).filter(moves_far).collect();
                 for (output, (own, &moved)) in own.iter_mut().zip(at_extremes).enumerate() {
                     // At a brink the least of moves leads to the other side.

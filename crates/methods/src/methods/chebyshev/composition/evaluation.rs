@@ -3,14 +3,11 @@
 use rustc_hash::FxHashMap;
 
 use super::Row;
+use super::tuning::TUNING;
 use crate::methods::chebyshev::polynomials::Polynomials;
 use crate::methods::expansion::{Expansion, Moves};
 use crate::methods::kept::KeptRow;
 use crate::numerics::{Extent, Range, largest, surrogate_error, to_brinks, truncation};
-
-/// Values of all outputs that are held at once, and points that are taken together at least.
-const AT_ONCE: usize = 1 << 20;
-const LEAST_AT_ONCE: usize = 16;
 
 impl Row<'_> {
     /// Values of the polynomials through outputs' own samples, output by output.
@@ -116,7 +113,8 @@ impl Row<'_> {
     /// follow together from a motion, a few points at a time: memory grows with the outputs asked for, not with all
     /// outputs times all points.
     pub fn evaluate_some(&self, outputs: &[usize], points: &[Vec<f64>], ways: &[Moves]) -> Vec<f64> {
-        let together = (AT_ONCE / (self.ensemble.outputs() * ways.len()).max(1)).max(LEAST_AT_ONCE);
+        let together =
+            (TUNING.values_at_once / (self.ensemble.outputs() * ways.len()).max(1)).max(TUNING.least_at_once);
         let (count, ways_count) = (points.len(), ways.len());
         let mut found = vec![0.0; outputs.len() * ways_count * count];
         for (part, some) in points.chunks(together).enumerate() {
@@ -148,7 +146,8 @@ impl Row<'_> {
                 wanted[number].push((index, end));
             }
         }
-        let together = (AT_ONCE / (self.ensemble.outputs() * ways.len()).max(1)).max(LEAST_AT_ONCE);
+        let together =
+            (TUNING.values_at_once / (self.ensemble.outputs() * ways.len()).max(1)).max(TUNING.least_at_once);
         let mut ends = vec![[0.0; 2]; outputs.len() * ways.len()];
         for (points, wanted) in points.chunks(together).zip(wanted.chunks(together)) {
             let values = self.evaluate_moved(points, ways);

@@ -9,6 +9,7 @@ mod composer;
 mod errors;
 mod evaluation;
 mod phases;
+pub(crate) mod tuning;
 
 pub(super) use composer::{Composer, NodeMotions};
 use phases::{as_times, phases, with_turns};
@@ -21,30 +22,11 @@ use crate::methods::expansion::Moves;
 use crate::numerics::{
     Course, Extent, ParameterBox, Phase, Range, Surrogate, SurrogateWork, corners, largest, limits, surrogate_error,
 };
-
-/// Largest mechanism, in coordinates, whose independent coordinates are searched for in every row.
-const MOST_COORDINATES: usize = 300;
-
-/// An output is the polynomial through its samples where both differ by less than this share of its range, and so many
-/// units of rounding of its values.
-const ALIKE: f64 = 1e-10;
-const ROUNDING: f64 = 256.0 * f64::EPSILON;
-
-/// An output does not follow from the coordinates where it differs from its simulated samples by this share of their
-/// range and this one of their values. (Accelerations and reactions of the samples have errors of the scheme that those
-/// which follow do not have.)
-const DISAGREES: (f64, f64) = (0.25, 1e-3);
-
-/// Samples at which outputs are held against the simulation, at most.
-const COMPARED: usize = 24;
-
-/// Samples, for either end of an output, near which it is searched for, and how far they are apart along some axis.
-const SEEDS: usize = 4;
-const APART: f64 = 0.5;
+use tuning::TUNING;
 
 /// Whether outputs can be composed: there are uncertain parameters, and not too many coordinates.
 pub fn can_compose(parameters: usize, coordinates: usize) -> bool {
-    parameters > 0 && (1..=MOST_COORDINATES).contains(&coordinates)
+    parameters > 0 && (1..=TUNING.most_coordinates).contains(&coordinates)
 }
 
 /// Motions and outputs of a surrogate's samples in one row.
@@ -57,14 +39,6 @@ struct RowMotion<'r> {
     /// Whether velocities are expanded.
     velocities: bool,
 }
-
-/// Corners of the box at which a search looks first: all of eight parameters', and of more such that any two meet at
-/// all their ends.
-const CORNERS: usize = 256;
-
-/// Rows looked at one after the other, so that each can begin where the one before ended. Fixed, so that results do not
-/// depend on the number of threads.
-pub(super) const BLOCK: usize = 16;
 
 /// One row of output.
 pub(super) struct Row<'r> {
@@ -227,7 +201,7 @@ impl<'r> Row<'r> {
 
     /// By how much an output and its own polynomial may differ and still be the same.
     fn alike(&self, output: usize, rounding: &[f64]) -> f64 {
-        ALIKE * Range::of(self.own_samples(output)).width() + rounding[output]
+        TUNING.alike * Range::of(self.own_samples(output)).width() + rounding[output]
     }
 
     /// How far outputs, as they follow from the coordinates, are from the ends of these ranges where those are
@@ -262,13 +236,13 @@ impl<'r> Row<'r> {
     fn rounding(&self, output: usize) -> f64 {
         let range = Range::of(self.own_samples(output));
         // Where it is NaN, nothing is known.
-        ROUNDING * range.lower.abs().max(range.upper.abs()).max(0.0)
+        TUNING.rounding * range.lower.abs().max(range.upper.abs()).max(0.0)
     }
 
     /// Samples at which outputs are held against the simulation, spread over all.
     fn compared(&self) -> Vec<usize> {
         let count = self.surrogate.samples().len();
-        (0..count).step_by(count.div_ceil(COMPARED)).collect()
+        (0..count).step_by(count.div_ceil(TUNING.compared)).collect()
     }
 
     /// Whether an output that follows from the coordinates is not what was simulated; NaN is not.
@@ -278,7 +252,8 @@ impl<'r> Row<'r> {
         if range.lower.is_nan() {
             return false;
         }
-        let allowed = DISAGREES.0 * range.width() + DISAGREES.1 * range.lower.abs().max(range.upper.abs());
+        let allowed =
+            TUNING.disagrees.0 * range.width() + TUNING.disagrees.1 * range.lower.abs().max(range.upper.abs());
         let differs = |(&sample, value): (&usize, &f64)| {
             let difference = (value - simulated[sample]).abs();
             difference.is_nan() || difference > allowed
@@ -308,9 +283,10 @@ impl<'r> Row<'r> {
             order.sort_by(|&a, &b| (sign * values[b]).total_cmp(&(sign * values[a])));
             let mut chosen: Vec<usize> = Vec::new();
             for sample in order {
-                let apart =
-                    |&other: &usize| samples[other].iter().zip(&samples[sample]).any(|(a, b)| (a - b).abs() > APART);
-                if chosen.len() < SEEDS && chosen.iter().all(apart) {
+                let apart = |&other: &usize| {
+                    samples[other].iter().zip(&samples[sample]).any(|(a, b)| (a - b).abs() > TUNING.seeds_apart)
+                };
+                if chosen.len() < TUNING.seeds && chosen.iter().all(apart) {
                     chosen.push(sample);
                 }
             }
@@ -321,7 +297,7 @@ impl<'r> Row<'r> {
 
     /// For each output the corners of the box at which it is least and largest.
     pub fn best_corners(&self) -> Vec<Vec<f64>> {
-        let places = corners(self.domain.dimension(), CORNERS);
+        let places = corners(self.domain.dimension(), TUNING.corners);
         let values = self.predict(&places);
         let of_output = |values: &[f64]| {
             let best =

@@ -2,13 +2,11 @@
 
 use std::borrow::Cow;
 
+use super::tuning::TUNING;
 use crate::methods::closure::Closure;
 use crate::methods::ensemble::{Ensemble, EnsembleError};
 use crate::methods::validation::ValidationTable;
 use crate::numerics::{Course, ParameterBox, Phase, Range, SparseBasis};
-
-/// A coordinate turns where it ends so far from where it began, in its scale: half a turn.
-const TURNED: f64 = std::f64::consts::PI;
 
 /// For each coordinate that turns the corner of the box at which it turns furthest, as far as samples at `points` tell.
 pub fn turning(direct: &ValidationTable, points: &[Vec<f64>], ensemble: &dyn Ensemble) -> Vec<Option<Vec<f64>>> {
@@ -20,7 +18,7 @@ pub fn turning(direct: &ValidationTable, points: &[Vec<f64>], ensemble: &dyn Ens
         // Each parameter by how the way changes with it. NaN is no turn.
         let along = |axis: usize| points.iter().zip(&ways).map(|(xi, way)| xi[axis] * (way - mean)).sum::<f64>();
         let corner = |axis: usize| if along(axis) * mean < 0.0 { -1.0 } else { 1.0 };
-        (mean.abs() > TURNED * scale).then(|| (0..ensemble.domain().dimension()).map(corner).collect())
+        (mean.abs() > TUNING.turned * scale).then(|| (0..ensemble.domain().dimension()).map(corner).collect())
     };
     ensemble.scales().iter().enumerate().map(of_coordinate).collect()
 }

@@ -2,6 +2,7 @@
 
 use symdiff::jet::Monomials;
 
+use super::tuning::TUNING;
 use crate::numerics::{LeastSquares, SparseBasis, SparseWork, largest, truncation};
 
 /// Terms in ξ.
@@ -46,15 +47,6 @@ pub(super) struct End {
     pub offset: f64,
 }
 
-/// A sample at a share of the largest margin weighs as one on the surface over this share and it.
-const NEAR_SURFACE: f64 = 0.05;
-
-/// Highest total degree of a surface by the number of parameters; of more it is the last.
-const SURFACE_DEGREES: [usize; 4] = [8, 5, 3, 2];
-
-/// Samples for each term of a fit.
-pub(super) const SAMPLES_A_TERM: f64 = 1.5;
-
 impl Powers {
     pub fn up_to(degree: usize, k: usize) -> Self {
         let mut all = vec![Vec::new()];
@@ -90,20 +82,20 @@ impl Level {
     pub fn through(samples: &[(&[f64], f64)]) -> Option<Self> {
         let k = samples.first()?.0.len();
         let size = largest(samples.iter().map(|(_, margin)| *margin));
-        let weight = |margin: f64| NEAR_SURFACE / (margin.abs() / size + NEAR_SURFACE);
+        let weight = |margin: f64| TUNING.near_surface / (margin.abs() / size + TUNING.near_surface);
         let weights: Vec<f64> = samples.iter().map(|(_, margin)| weight(*margin)).collect();
         let margins: Vec<f64> = samples.iter().map(|(_, margin)| *margin).collect();
         let of_degree = |degree: usize| {
             let powers = Powers::up_to(degree, k);
             let terms = values_of(samples.iter().map(|(xi, _)| *xi), |xi, into| powers.values(xi, into));
-            if samples.len() as f64 <= SAMPLES_A_TERM * powers.0.len() as f64 {
+            if samples.len() as f64 <= TUNING.samples_a_term * powers.0.len() as f64 {
                 return None;
             }
             let (coefficients, left_out) = LeastSquares::new(&terms, weights.clone())?.fit(&margins)?;
             let error = largest(left_out.iter().zip(&weights).map(|(error, weight)| error * weight));
             Some(Self { powers, coefficients, error })
         };
-        let highest = SURFACE_DEGREES.get(k.saturating_sub(1)).or(SURFACE_DEGREES.last()).copied()?;
+        let highest = TUNING.surface_degrees.get(k.saturating_sub(1)).or(TUNING.surface_degrees.last()).copied()?;
         (1..=highest).filter_map(of_degree).min_by(|a, b| a.error.total_cmp(&b.error))
     }
 

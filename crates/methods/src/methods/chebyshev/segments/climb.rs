@@ -8,38 +8,8 @@
 use super::row::SegmentRow;
 use super::seeds::Lattice;
 use super::surrogate::Point;
+use super::tuning::TUNING;
 use crate::numerics::{Extent, Range};
-
-/// Climbs for either end of an output, and how far apart they begin along some axis where they are in one segment.
-const CLIMBS: usize = 3;
-const APART: f64 = 0.3;
-
-/// Radii of the first trust region, in ξ and in the share of the segment, and where a climb ends.
-const RADIUS: f64 = 0.15;
-const OF_SHARE: f64 = 0.25;
-const LEAST_RADIUS: f64 = 1e-6;
-
-/// Radii after a move that was none, and after one, over those before it.
-const SHRINKS: (f64, f64) = (0.5, 0.25);
-const GROWS: (f64, f64) = (2.0, 1.5);
-
-/// Moves of a climb, at most.
-const MOVES: usize = 120;
-
-/// Difference by which slopes are taken.
-const DIFFERENCE: f64 = 1e-6;
-
-/// Moves to a surface, and by how much of a segment it may be missed.
-const RETURNS: usize = 4;
-const MISSED: f64 = 1e-11;
-
-/// By how much of a segment a seed may be beyond its ends.
-const SEED: f64 = 1e-6;
-
-/// A point is moved back inside of a surface by a little more than it is beyond, and one on it is inside by this share
-/// of the surface's error.
-const BEYOND: f64 = 1.001;
-const ON_END: f64 = 1e-3;
 
 /// A place on the way to an extreme.
 struct Climb {
@@ -72,7 +42,7 @@ struct Move {
 /// The outputs' ranges, with the places of their ends.
 pub(super) fn extents(row: &SegmentRow, lattice: &Lattice) -> Vec<Extent> {
     let mut climbs = begun(row, lattice);
-    for _ in 0..MOVES {
+    for _ in 0..TUNING.moves {
         if !step(row, &mut climbs) {
             break;
         }
@@ -101,7 +71,8 @@ fn begun(row: &SegmentRow, lattice: &Lattice) -> Vec<Climb> {
         lattice.points.iter().map(|point| (point.segment(time), point.clone())).collect();
     for end in 0..surrogate.ends.len() {
         // A little inside.
-        let found = lattice.at_zeros(surrogate, |point| point.margins[end] - ON_END * surrogate.ends[end].error());
+        let found =
+            lattice.at_zeros(surrogate, |point| point.margins[end] - TUNING.on_end * surrogate.ends[end].error());
         seeds.extend(found.into_iter().map(|point| (point.segment(time), point)));
     }
     for segment in 0..surrogate.segments() {
@@ -114,7 +85,7 @@ fn begun(row: &SegmentRow, lattice: &Lattice) -> Vec<Climb> {
     }
     let is_in_segment = |segment: usize, point: &Point| {
         let [begin, end] = [point.times[segment], point.times[segment + 1]];
-        (-SEED..=1.0 + SEED).contains(&((time - begin) / (end - begin)))
+        (-TUNING.beyond_of_seed..=1.0 + TUNING.beyond_of_seed).contains(&((time - begin) / (end - begin)))
     };
     seeds.retain(|(segment, point)| point.is_inside() && is_in_segment(*segment, point));
     if seeds.is_empty() {
@@ -132,16 +103,24 @@ fn begun(row: &SegmentRow, lattice: &Lattice) -> Vec<Climb> {
                 let (segment, point) = &seeds[seed];
                 let differs = |&other: &usize| {
                     let (of_other, other) = &seeds[other];
-                    let is_apart = point.xi.iter().zip(&other.xi).any(|(a, b)| (a - b).abs() > APART);
+                    let is_apart = point.xi.iter().zip(&other.xi).any(|(a, b)| (a - b).abs() > TUNING.climbs_apart);
                     segment != of_other || is_apart
                 };
-                if chosen.len() < CLIMBS && chosen.iter().all(differs) {
+                if chosen.len() < TUNING.climbs && chosen.iter().all(differs) {
                     chosen.push(seed);
                 }
             }
             climbs.extend(chosen.into_iter().map(|seed| {
                 let (segment, point) = seeds[seed].clone();
-                Climb { output, sign, segment, point, value: values[seed], radius: RADIUS, of_share: OF_SHARE }
+                Climb {
+                    output,
+                    sign,
+                    segment,
+                    point,
+                    value: values[seed],
+                    radius: TUNING.radius,
+                    of_share: TUNING.radius_of_share,
+                }
             }));
         }
     }
@@ -150,7 +129,7 @@ fn begun(row: &SegmentRow, lattice: &Lattice) -> Vec<Climb> {
 
 /// Moves all climbs that have not ended; whether there are any.
 fn step(row: &SegmentRow, climbs: &mut [Climb]) -> bool {
-    let mut going: Vec<&mut Climb> = climbs.iter_mut().filter(|climb| climb.radius > LEAST_RADIUS).collect();
+    let mut going: Vec<&mut Climb> = climbs.iter_mut().filter(|climb| climb.radius > TUNING.least_radius).collect();
     if going.is_empty() {
         return false;
     }
@@ -197,13 +176,13 @@ fn step(row: &SegmentRow, climbs: &mut [Climb]) -> bool {
     }
     let points_of = |moves: &[Move]| row.piece.surrogate.points(moves.iter().map(|to| to.xi.clone()).collect());
     let mut points = points_of(&moves);
-    for _ in 0..RETURNS {
+    for _ in 0..TUNING.returns {
         let mut moved = false;
         for ((climb, to), point) in going.iter().zip(&mut moves).zip(&points) {
             let lacks = to.share - climb.share(point, row.time);
-            moved |= lacks.abs() > MISSED && back(&mut to.xi, &to.slopes, lacks);
+            moved |= lacks.abs() > TUNING.missed && back(&mut to.xi, &to.slopes, lacks);
             for (slopes, margin) in to.of_margins.iter().zip(&point.margins) {
-                moved |= *margin < 0.0 && back(&mut to.xi, slopes, -BEYOND * margin);
+                moved |= *margin < 0.0 && back(&mut to.xi, slopes, -TUNING.moved_back * margin);
             }
         }
         if !moved {
@@ -217,21 +196,22 @@ fn step(row: &SegmentRow, climbs: &mut [Climb]) -> bool {
     let count = going.len();
     for (index, (climb, point)) in going.iter_mut().zip(&points).enumerate() {
         let value = values[climb.output * count + index];
-        let in_segment = (-2.0 * MISSED..=1.0 + 2.0 * MISSED).contains(&climb.share(point, row.time));
+        let in_segment = (-2.0 * TUNING.missed..=1.0 + 2.0 * TUNING.missed).contains(&climb.share(point, row.time));
         let inside = in_segment && point.is_inside();
         let rises = inside && climb.sign * value > climb.sign * climb.value;
         if rises {
             (climb.value, climb.point) = (value, point.clone());
         }
-        let (of_xi, of_share) = if rises { GROWS } else { SHRINKS };
-        (climb.radius, climb.of_share) = ((of_xi * climb.radius).min(1.0), (of_share * climb.of_share).min(OF_SHARE));
+        let (of_xi, of_share) = if rises { TUNING.grows } else { TUNING.shrinks };
+        (climb.radius, climb.of_share) =
+            ((of_xi * climb.radius).min(1.0), (of_share * climb.of_share).min(TUNING.radius_of_share));
     }
     true
 }
 
 /// A difference that stays in the box.
 fn inward(xi: f64) -> f64 {
-    if xi > 0.0 { -DIFFERENCE } else { DIFFERENCE }
+    if xi > 0.0 { -TUNING.step_of_slopes } else { TUNING.step_of_slopes }
 }
 
 /// The move within limits that ascends most, and along the slopes of each surface by no less than −room.

@@ -4,25 +4,13 @@
 //! samples are added where a part has few. Behind a surface that is grazed motions change within a layer, which becomes
 //! a part of its own where one polynomial does not do.
 
-use super::basis::{Basis, Fitted, Level, SAMPLES_A_TERM};
+use super::basis::{Basis, Fitted, Level};
 use super::parts::{Samples, WordPart};
 use super::piece::Piece;
 use super::surrogate::{SegmentErrors, SegmentSurrogate};
+use super::tuning::TUNING;
 use crate::methods::ensemble::{Ensemble, EnsembleError};
 use crate::numerics::{CutMotions, LeastSquares, SegmentMotions, largest};
-
-/// Rounds in which samples are added to parts, and the layers that are cut off one after the other.
-const ROUNDS: usize = 2;
-const LAYERS: usize = 3;
-
-/// Rounds in which points that are far outside of samples are added.
-const COVERINGS: usize = 6;
-
-/// A polynomial does that misses samples that are left out by no more than this share of how far they range.
-const ENOUGH: f64 = 1e-3;
-
-/// Values that differ by this share of them are the same.
-const ROUNDING: f64 = 1e-9;
 
 /// Samples, and what their polynomials are held against.
 pub(super) struct Fitting<'v> {
@@ -47,7 +35,7 @@ impl Fitting<'_> {
         let mut parts: Vec<WordPart> = (0..words).map(|word| WordPart::of_word(word, &self.samples.motions)).collect();
         let (mut layer, mut covered) = (0, 0);
         loop {
-            for _ in 0..ROUNDS {
+            for _ in 0..TUNING.rounds_of_samples {
                 let wanted = self.wanted(&parts);
                 if wanted.is_empty() || ensemble.is_interrupted() {
                     break;
@@ -61,15 +49,15 @@ impl Fitting<'_> {
             for part in &parts {
                 let fitted = self.fitted(part, &levels);
                 wanted.extend(fitted.iter().flat_map(|(_, piece)| self.uncovered(part, piece)));
-                let misses = fitted.as_ref().is_some_and(|(misses, _)| *misses > ENOUGH);
-                let divided = fitted.as_ref().filter(|_| misses && layer < LAYERS);
+                let misses = fitted.as_ref().is_some_and(|(misses, _)| *misses > TUNING.enough);
+                let divided = fitted.as_ref().filter(|_| misses && layer < TUNING.layers);
                 match divided.and_then(|(_, piece)| part.layers(&levels, &piece.samples)) {
                     Some(layers) => next.extend(layers),
                     None => next.push(part.clone()),
                 }
                 found.extend(fitted.map(|(_, piece)| piece));
             }
-            if next.len() == parts.len() && !wanted.is_empty() && covered < COVERINGS {
+            if next.len() == parts.len() && !wanted.is_empty() && covered < TUNING.coverings {
                 covered += 1;
                 if !self.add(ensemble, wanted)? {
                     return Ok(None);
@@ -100,13 +88,13 @@ impl Fitting<'_> {
         let depths = part.depths(levels);
         let of_degree = |degree: usize, depths: &[Level]| {
             let basis = Basis::Fitted(Fitted::new(degree, depths, k));
-            let is_enough = count as f64 >= SAMPLES_A_TERM * basis.len() as f64 || degree == 0;
+            let is_enough = count as f64 >= TUNING.samples_a_term * basis.len() as f64 || degree == 0;
             let squares = LeastSquares::new(&basis.values(&xi), vec![1.0; count]).filter(|_| is_enough)?;
             let left_out = |values: &[f64]| {
                 let [low, high] = [f64::min, f64::max].map(|pick| values.iter().copied().reduce(pick).unwrap_or(0.0));
                 let error = squares.fit(values).map_or(f64::INFINITY, |(_, error)| largest(error));
                 // What varies by rounding only says nothing of a degree.
-                let varies = high - low > ROUNDING * low.abs().max(high.abs());
+                let varies = high - low > TUNING.rounding * low.abs().max(high.abs());
                 if varies { error / (high - low) } else { 0.0 }
             };
             let ends = motions.nodes.iter().filter_map(|nodes| nodes.last()).flat_map(|node| node.chunks_exact(count));

@@ -4,16 +4,9 @@
 use rustc_hash::FxHashMap;
 
 use super::surrogate::SegmentErrors;
+use super::tuning::TUNING;
 use crate::methods::ensemble::{Ensemble, EnsembleError};
 use crate::numerics::{CutMotions, Range, SegmentMotions, SparseGrid, Surrogate, SurrogateWork, expected, largest};
-
-/// Total degree to begin with, highest degree in a parameter, and most terms.
-const FIRST_DEGREE: usize = 2;
-const HIGHEST: u8 = 12;
-const MOST_TERMS: usize = 1000;
-
-/// Rate at which coefficients fall at least, where two of an axis tell less.
-const SLOWEST: f64 = 0.9;
 
 /// A grid that grows, with the motions of its samples.
 pub(super) struct Growth {
@@ -36,8 +29,10 @@ impl Growth {
     /// Where a sample cannot be assembled.
     pub fn start(ensemble: &dyn Ensemble) -> Result<Option<Self>, EnsembleError> {
         let k = ensemble.domain().dimension();
-        let mut grid = SparseGrid::new(&vec![HIGHEST; k]);
-        let Some(first) = SparseGrid::simplex(&vec![FIRST_DEGREE; k], MOST_TERMS) else { return Ok(None) };
+        let mut grid = SparseGrid::new(&vec![TUNING.highest_degree; k]);
+        let Some(first) = SparseGrid::simplex(&vec![TUNING.first_degree; k], TUNING.most_terms) else {
+            return Ok(None);
+        };
         (1..first.len()).for_each(|index| grid.add(first.levels(index)));
         let motions = motions_from(ensemble, &grid, 0)?;
         Ok(motions.map(|motions| Self { grid, motions }))
@@ -56,7 +51,7 @@ impl Growth {
     pub fn grow(&mut self, ensemble: &dyn Ensemble, wanted: usize) -> Result<bool, EnsembleError> {
         let (before, Some(mut sizes)) = (self.grid.len(), self.sizes()) else { return Ok(false) };
         let rates = self.rates(&sizes);
-        while self.grid.len() < wanted.min(MOST_TERMS) {
+        while self.grid.len() < wanted.min(TUNING.most_terms) {
             let candidates = self.grid.candidates().into_iter();
             let all = candidates.map(|levels| (foreseen(&sizes, &rates, &levels), levels));
             let Some((size, levels)) = all.max_by(|a, b| a.0.total_cmp(&b.0)) else { break };
@@ -104,7 +99,7 @@ impl Growth {
             // Even or odd ones may be missing: pairs are compared, the first of which is not the constant.
             let (last, before) = (size(order), size((order - 1).max(1)));
             let pair = if order > 2 { (size(order - 2).max(before), last.max(before)) } else { (before, last) };
-            if pair.0 > 0.0 { (pair.1 / pair.0).min(SLOWEST) } else { 0.0 }
+            if pair.0 > 0.0 { (pair.1 / pair.0).min(TUNING.slowest_fall) } else { 0.0 }
         };
         self.orders().into_iter().enumerate().map(rate).collect()
     }

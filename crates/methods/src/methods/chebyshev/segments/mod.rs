@@ -23,6 +23,7 @@ mod row;
 mod sampling;
 mod seeds;
 mod surrogate;
+pub(crate) mod tuning;
 
 use rayon::prelude::*;
 use symdiff::jet::JetSpace;
@@ -40,15 +41,7 @@ use piece::Piece;
 use pieces::Pieces;
 use row::{BoxRow, SensedRow};
 use seeds::Lattice;
-
-/// Degrees that are tried to a tolerance.
-const DEGREES: [usize; 6] = [2, 3, 4, 6, 8, 12];
-
-/// Parameters from which on terms are added one by one: a full grid of fewer takes less time.
-const MANY: usize = 3;
-
-/// Of many parameters, rows are bounded again where polynomials err by no more than so many times as would meet a goal.
-const LIKELY: f64 = 2.0;
+use tuning::TUNING;
 
 /// By segments between events, where the ensemble's motions are cut there.
 ///
@@ -84,10 +77,10 @@ pub(super) fn adapted(
     if !can_compose(k, ensemble.scales().len()) {
         return Ok(None);
     }
-    if k >= MANY {
+    if k >= TUNING.many_parameters {
         return grown(ensemble, goal, validation);
     }
-    for order in DEGREES {
+    for order in TUNING.degrees {
         let count = (order + 1).checked_pow(k as u32);
         if count.is_none_or(|count| goal.spent + spent + count > goal.budget.simulations) {
             break;
@@ -118,7 +111,7 @@ fn grown(ensemble: &dyn Ensemble, goal: &Goal, validation: &Validation) -> Resul
         let error = largest(pieces.all.iter().map(|piece| growth.error(&piece.errors)));
         let wanted = count + count / 2;
         let is_last = goal.spent + wanted > goal.budget.simulations || ensemble.is_interrupted();
-        let is_likely = |(excess, before): (f64, f64)| excess * error <= LIKELY * before;
+        let is_likely = |(excess, before): (f64, f64)| excess * error <= TUNING.likely * before;
         if is_last || last.is_none_or(is_likely) {
             let result = finished(composed(ensemble, &pieces, Some(&surrogate), validation)?, count, &pieces);
             let excess = excess(&result, goal);

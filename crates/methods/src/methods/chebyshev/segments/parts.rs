@@ -1,6 +1,7 @@
 //! Which samples are in which part of the box.
 
 use super::basis::{End, Level};
+use super::tuning::TUNING;
 use crate::numerics::CutMotions;
 
 /// Samples with their motions.
@@ -23,10 +24,6 @@ struct Limit {
     sign: f64,
     offset: f64,
 }
-
-/// A layer reaches to this share of the depth of the part that it is cut off from: beside the surface everything goes
-/// with the root of the depth.
-const LAYER: f64 = 1.0 / 150.0;
 
 impl Samples {
     /// The surfaces between words, as far as samples tell.
@@ -82,7 +79,7 @@ impl WordPart {
         let touches = |limit: &&Limit| limit.sign < 0.0 && limit.offset == 0.0;
         let boundary = self.limits.iter().find(touches)?.boundary;
         let level = levels[boundary].as_ref()?;
-        let depth = LAYER * xi.iter().map(|xi| -level.at(xi)).fold(0.0, f64::max);
+        let depth = TUNING.layer * xi.iter().map(|xi| -level.at(xi)).fold(0.0, f64::max);
         if depth <= level.error() {
             return None;
         }

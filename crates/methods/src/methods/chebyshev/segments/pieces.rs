@@ -10,18 +10,11 @@ use super::basis::Basis;
 use super::fitting::Fitting;
 use super::parts::{Samples, WordPart};
 use super::piece::Piece;
-use super::sampling::CORNERS;
 use super::surrogate::{SegmentErrors, SegmentSurrogate};
+use super::tuning::TUNING;
 use crate::methods::ensemble::{Ensemble, EnsembleError};
 use crate::methods::validation::Validation;
 use crate::numerics::{CutMotions, SegmentMotions, Surrogate, SurrogateWork, corners, spread};
-
-/// Least and highest total degree in a part, the latter by the number of parameters.
-const LEAST_DEGREE: usize = 3;
-const DEGREES: [usize; 4] = [8, 5, 3, 2];
-
-/// Samples for each parameter that show the parts of jets.
-const JET_SAMPLES: usize = 24;
 
 /// All parts.
 pub(super) struct Pieces<'a> {
@@ -61,10 +54,18 @@ impl<'a> Pieces<'a> {
             return Ok(Some(Self { all, known_to, added: 0 }));
         }
         let order = grid.basis().orders().iter().copied().max().map_or(0, usize::from);
-        let highest = DEGREES.get(domain.dimension() - 1).or(DEGREES.last()).map_or(0, |&most| most);
+        let highest = TUNING
+            .degrees_of_part
+            .get(domain.dimension() - 1)
+            .or(TUNING.degrees_of_part.last())
+            .map_or(0, |&most| most);
         let samples = Samples { xi: grid.samples().to_vec(), motions };
-        let fitting =
-            Fitting { samples, degree: order.max(LEAST_DEGREE).min(highest), points: &validation.points, direct };
+        let fitting = Fitting {
+            samples,
+            degree: order.max(TUNING.least_degree).min(highest),
+            points: &validation.points,
+            direct,
+        };
         fitting.pieces(ensemble).map(|fitted| {
             fitted.map(|(all, samples, known_to)| Self { all, known_to, added: samples - grid.samples().len() })
         })
@@ -87,7 +88,7 @@ impl<'a> Pieces<'a> {
         let mut samples = Samples { xi: validation.points.clone(), motions: direct };
         let is_one = samples.motions.words.iter().filter(|word| !word.samples.is_empty()).count() == 1;
         if !is_one {
-            let others = [corners(k, CORNERS), spread(k, JET_SAMPLES * k)].concat();
+            let others = [corners(k, TUNING.corners), spread(k, TUNING.jet_samples * k)].concat();
             let Some(motions) = ensemble.segments(&domain.samples(&others))? else { return Ok(None) };
             samples.motions.append(motions, samples.xi.len());
             samples.xi.extend(others);

@@ -3,6 +3,7 @@
 use super::piece::Piece;
 use super::pieces::Pieces;
 use super::surrogate::Point;
+use super::tuning::TUNING;
 use crate::methods::chebyshev::sensitivity::Predicted;
 use crate::methods::closure::Closure;
 use crate::methods::ensemble::Ensemble;
@@ -32,12 +33,6 @@ pub(super) struct SensedRow<'r> {
     /// By which instants and motions of a box of one word are expanded.
     pub grid: &'r Surrogate,
 }
-
-/// Difference by which slopes of surfaces are taken.
-const DIFFERENCE: f64 = 1e-6;
-
-/// An end beside a surface is moved with it where it is nearer than so many times the surface's error.
-const NEAR: f64 = 2.0;
 
 impl SegmentRow<'_> {
     /// All outputs (output, point), given the point's segment, and the time at which its motion is taken there.
@@ -124,13 +119,13 @@ impl SegmentRow<'_> {
         let surface = &self.piece.surrogate.ends[end];
         let across = |point: &Point| {
             let mut xi = point.xi.clone();
-            if point.margins[end].abs() > NEAR * surface.error() {
+            if point.margins[end].abs() > TUNING.near_end * surface.error() {
                 return xi;
             }
             let of = |axis: usize| {
                 let mut beside = point.xi.clone();
-                beside[axis] += DIFFERENCE;
-                (surface.margin(&beside) - point.margins[end]) / DIFFERENCE
+                beside[axis] += TUNING.step_of_surfaces;
+                (surface.margin(&beside) - point.margins[end]) / TUNING.step_of_surfaces
             };
             let slopes: Vec<f64> = (0..xi.len()).map(of).collect();
             let square: f64 = slopes.iter().map(|slope| slope * slope).sum();

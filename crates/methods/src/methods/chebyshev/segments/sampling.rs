@@ -1,27 +1,12 @@
 //! Samples that fits in the parts of a box need: enough of them, some beside surfaces, and none far outside of the
 //! others.
 
-use super::basis::{Fitted, SAMPLES_A_TERM};
+use super::basis::Fitted;
 use super::fitting::Fitting;
 use super::parts::WordPart;
 use super::piece::Piece;
+use super::tuning::TUNING;
 use crate::numerics::{corners, largest, spread};
-
-/// Candidates of each round, and corners among them.
-const CANDIDATES: usize = 512;
-pub(super) const CORNERS: usize = 16;
-
-/// Halvings of a line on which a level is looked for.
-const HALVINGS: usize = 40;
-
-/// Of the samples that a part lacks on the side of a surface without the event, one in so many is beside it.
-const BESIDE: usize = 3;
-
-/// A fit at a point outside of the samples may be off by so many times, squared, what samples are off by; such points
-/// are added, so many at once and so far apart.
-const FAR: f64 = 2.0;
-const COVERING: usize = 4;
-const APART: f64 = 0.2;
 
 impl Fitting<'_> {
     /// Points of a part that are far outside of its samples, the farthest first: a fit may have any value there.
@@ -34,26 +19,26 @@ impl Fitting<'_> {
             .filter(|sample| !is_own(sample))
             .map(|sample| &self.samples.xi[sample])
             .collect();
-        let of_box = [corners(k, CORNERS), spread(k, CANDIDATES)].concat();
+        let of_box = [corners(k, TUNING.corners), spread(k, TUNING.candidates)].concat();
         let inside: Vec<Vec<f64>> = of_box.iter().filter(|xi| margin(xi) >= 0.0).cloned().collect();
         let outside: Vec<&Vec<f64>> = of_box.iter().filter(|xi| margin(xi) < 0.0).chain(others).collect();
         let from: Vec<&Vec<f64>> =
             if inside.is_empty() { piece.samples.iter().collect() } else { inside.iter().collect() };
-        let ends = across(&from, &outside, CANDIDATES / 4, margin, 0.0);
+        let ends = across(&from, &outside, TUNING.candidates / 4, margin, 0.0);
         let mut all: Vec<Vec<f64>> = inside.iter().cloned().chain(ends).filter(|xi| margin(xi) >= 0.0).collect();
         let mut found = Vec::new();
-        while found.len() < COVERING {
+        while found.len() < TUNING.covering {
             let leverage = |xi: &Vec<f64>| surrogate.leverage(xi);
             let Some((worst, xi)) = all
                 .iter()
                 .map(|xi| (leverage(xi), xi.clone()))
                 .max_by(|a, b| a.0.total_cmp(&b.0))
-                .filter(|(worst, xi)| *worst > FAR && !self.samples.xi.contains(xi))
+                .filter(|(worst, xi)| *worst > TUNING.far_outside && !self.samples.xi.contains(xi))
             else {
                 break;
             };
             // Those beside it are covered with it.
-            all.retain(|other| leverage(other) < 0.5 * worst || distance(other, &xi) > APART);
+            all.retain(|other| leverage(other) < 0.5 * worst || distance(other, &xi) > TUNING.covering_apart);
             all.retain(|other| *other != xi);
             found.push(xi);
         }
@@ -65,7 +50,7 @@ impl Fitting<'_> {
         let levels = self.samples.levels();
         let xi = &self.samples.xi;
         let k = xi.first().map_or(0, Vec::len);
-        let of_box = [corners(k, CORNERS), spread(k, CANDIDATES + xi.len()).split_off(xi.len())].concat();
+        let of_box = [corners(k, TUNING.corners), spread(k, TUNING.candidates + xi.len()).split_off(xi.len())].concat();
         let mut wanted: Vec<Vec<f64>> = Vec::new();
         for part in parts {
             let (ends, depths) = (part.ends(&levels), part.depths(&levels));
@@ -73,11 +58,14 @@ impl Fitting<'_> {
             let inside: Vec<&Vec<f64>> =
                 self.samples.places(part, &levels).iter().map(|&index| &xi[own[index]]).collect();
             let terms = Fitted::new(self.degree, &depths, k).len();
-            let lacks = ((SAMPLES_A_TERM * terms as f64) as usize + 2).saturating_sub(inside.len());
+            let lacks = ((TUNING.samples_a_term * terms as f64) as usize + 2).saturating_sub(inside.len());
             let fits = |point: &Vec<f64>| ends.iter().all(|end| end.margin(point) >= 0.0) && !xi.contains(point);
             // Those beside a surface, on lines across it.
-            let beside =
-                if ends.iter().any(|end| end.sign < 0.0 && end.offset == 0.0) { lacks } else { lacks / BESIDE };
+            let beside = if ends.iter().any(|end| end.sign < 0.0 && end.offset == 0.0) {
+                lacks
+            } else {
+                lacks / TUNING.beside_surface
+            };
             let of_word: Vec<&Vec<f64>> = own.iter().map(|&sample| &xi[sample]).collect();
             let on_lines = ends.iter().filter(|end| end.offset == 0.0).flat_map(|end| {
                 let margin = |point: &Vec<f64>| end.margin(point);
@@ -120,7 +108,7 @@ fn across(
         let wanted = depth * ((index as f64 + 0.5) / count as f64).powi(2);
         let at = |share: f64| from.iter().zip(to).map(|(a, b)| a + share * (b - a)).collect::<Vec<f64>>();
         let (mut low, mut high) = (0.0, 1.0);
-        for _ in 0..HALVINGS {
+        for _ in 0..TUNING.halvings_of_line {
             let middle = 0.5 * (low + high);
             if margin(&at(middle)) > wanted { low = middle } else { high = middle }
         }

@@ -2,19 +2,8 @@
 //! the row's time.
 
 use super::surrogate::{Point, SegmentSurrogate};
+use super::tuning::TUNING;
 use crate::numerics::{corners, spread};
-
-/// Intervals of the lattice along each axis, by the number of parameters; more have corners and points spread over the
-/// box, each joined to the next.
-const INTERVALS: [usize; 4] = [32, 12, 6, 4];
-const CORNERS: usize = 64;
-const SPREAD: usize = 32;
-
-/// Points on a surface, at most.
-const MOST_ON_SURFACE: usize = 96;
-
-/// Corrections of such a point along its edge.
-const CORRECTIONS: usize = 5;
 
 /// Points of the box, and which of them are joined by edges.
 pub(super) struct Lattice {
@@ -25,8 +14,9 @@ pub(super) struct Lattice {
 impl Lattice {
     /// With `others` beside the lattice's own points.
     pub fn new(surrogate: &SegmentSurrogate, others: &[Vec<f64>], k: usize) -> Self {
-        let Some(&intervals) = INTERVALS.get(k.saturating_sub(1)) else {
-            let xi = [&corners(k, CORNERS)[..], &spread(k, SPREAD * k), others].concat();
+        let Some(&intervals) = TUNING.intervals.get(k.saturating_sub(1)) else {
+            let xi = [&corners(k, TUNING.corners_of_lattice)[..], &spread(k, TUNING.spread_a_parameter * k), others]
+                .concat();
             let edges = (1..xi.len()).flat_map(|end| [(end - 1, end), (end / 2, end)]).collect();
             return Self { points: surrogate.points(xi), edges };
         };
@@ -56,13 +46,13 @@ impl Lattice {
         let distances: Vec<f64> = self.points.iter().map(&distance).collect();
         let crossed: Vec<(usize, usize)> =
             self.edges.iter().copied().filter(|&(a, b)| distances[a] * distances[b] < 0.0).collect();
-        let every = crossed.len().div_ceil(MOST_ON_SURFACE).max(1);
+        let every = crossed.len().div_ceil(TUNING.most_on_surface).max(1);
         let edges: Vec<(usize, usize)> = crossed.into_iter().step_by(every).collect();
         // The last two places along each edge, with the distances there: the secant method.
         let mut last: Vec<[(f64, f64); 2]> =
             edges.iter().map(|&(a, b)| [(0.0, distances[a]), (1.0, distances[b])]).collect();
         let mut found = Vec::new();
-        for _ in 0..CORRECTIONS {
+        for _ in 0..TUNING.corrections {
             let next = |&[(before, of_before), (share, of_share)]: &[(f64, f64); 2]| {
                 let next = share - of_share * (share - before) / (of_share - of_before);
                 if next.is_finite() { next.clamp(0.0, 1.0) } else { share }

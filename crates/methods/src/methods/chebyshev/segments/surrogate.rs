@@ -1,10 +1,8 @@
 //! Polynomials of the instants of events, and of the motion between them, of one word.
 
 use super::basis::{Basis, End};
+use super::tuning::TUNING;
 use crate::numerics::{LeastSquares, STEP_NODES, SegmentMotions, largest, step_weights};
-
-/// How far the branch of a segment goes on beyond its ends, as a share of it.
-const BEYOND: f64 = 0.02;
 
 /// Motions of one word, as functions of the parameters in a part of the box.
 pub(super) struct SegmentSurrogate<'a> {
@@ -101,7 +99,7 @@ impl<'a> SegmentSurrogate<'a> {
     /// shortest segments are no longer than their errors.
     pub fn motion(&self, point: &Point, segment: usize, time: f64) -> impl Iterator<Item = f64> {
         let [begin, end] = [point.times[segment], point.times[segment + 1]];
-        let share = ((time - begin) / (end - begin)).clamp(-BEYOND, 1.0 + BEYOND);
+        let share = ((time - begin) / (end - begin)).clamp(-TUNING.beyond_branch, 1.0 + TUNING.beyond_branch);
         let (step, weights) = step_weights(&self.steps[segment], if share.is_nan() { 0.0 } else { share });
         let nodes = &self.nodes[segment][step * (STEP_NODES - 1)..][..STEP_NODES];
         let terms = point.terms.clone();

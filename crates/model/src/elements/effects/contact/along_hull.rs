@@ -22,15 +22,7 @@ use symdiff::Scalar;
 use super::hull::{Hull, constant};
 use super::solid::Segment;
 use crate::multibody::Vector;
-
-/// s over M.
-const PARALLEL: f64 = 1e-4;
-
-/// Square of the sine of the angle between a line and an edge below which they do not cross.
-const CROSSING: f64 = 1e-8;
-
-/// Features meet within this share of the hull's size.
-const ROUNDING: f64 = 1e-9;
+use crate::elements::tuning::TUNING;
 
 /// A feature that is nearest, as far as it is known: its distance, not positive where it is not, and t.
 type Candidate<'g> = (Scalar<'g>, Scalar<'g>);
@@ -51,13 +43,13 @@ struct Line<'g> {
 pub fn nearest_to_hull<'g>(hull: &Hull, (start, along, length): Segment<'g>) -> Scalar<'g> {
     let zero = length.builder().number(0.0);
     let ends = [(start, zero, along), (start + length * along, length, -along)];
-    let line = Line { along, length, ends, slack: ROUNDING * hull.radius() };
+    let line = Line { along, length, ends, slack: TUNING.meeting_features * hull.radius() };
     let mut candidates = Vec::new();
     line.over_faces(hull, &mut candidates);
     line.beside_edges(hull, &mut candidates);
     line.beside_corners(hull, &mut candidates);
     let best = candidates.iter().fold(zero, |best, (distance, _)| best.max(*distance));
-    let share = PARALLEL * length;
+    let share = TUNING.smooth_lines_of_hull * length;
     let (mut sum, mut moment) = (zero, zero);
     for (distance, place) in candidates {
         let weight = distance.select((share - (best - distance)).max(zero), zero);
@@ -112,7 +104,7 @@ impl<'g> Line<'g> {
             let square = across.dot(across);
             let (offset, cosine) = (start - from, along.dot(self.along));
             let height = across.dot(offset);
-            let crossed = (square - CROSSING).select(square, g.number(1.0));
+            let crossed = (square - TUNING.crossing_lines).select(square, g.number(1.0));
             let (on_edge, on_line) = (along.dot(offset), self.along.dot(offset));
             let place = (cosine * on_edge - on_line) / crossed;
             let conditions = within(on_edge + cosine * place)
@@ -120,7 +112,7 @@ impl<'g> Line<'g> {
                 .chain([place, self.length - place])
                 .chain(inward.map(|inward| -height * across.dot(inward)));
             let distance = self.only_where(conditions, height.abs() / crossed.sqrt());
-            into.push(((square - CROSSING).select(distance, g.number(0.0)), place));
+            into.push(((square - TUNING.crossing_lines).select(distance, g.number(0.0)), place));
             for (end, place, ahead) in self.ends {
                 let offset = end - from;
                 let on_edge = along.dot(offset);

@@ -7,9 +7,7 @@
 use symdiff::Scalar;
 
 use crate::multibody::Vector;
-
-/// The distance from the middle of an arc under the root, over R: it moves the arc by 5e-9 R.
-const CENTRED: f64 = 1e-4;
+use crate::elements::tuning::TUNING;
 
 /// An arc in the x and y of a frame.
 #[derive(Clone, Copy, Debug)]
@@ -43,7 +41,7 @@ impl<'g> Arc<'g> {
     /// |w|, never zero.
     fn distance(&self, place: Vector<'g>) -> Scalar<'g> {
         let from = place - self.middle;
-        let centred = CENTRED * self.radius;
+        let centred = TUNING.centred_arc * self.radius;
         (from.dot(from) + centred * centred).sqrt()
     }
 

@@ -12,12 +12,7 @@
 use symdiff::Scalar;
 
 use super::solid::Segment;
-
-/// Angle of a line to a face within which it counts as parallel.
-const PARALLEL: f64 = 1e-4;
-
-/// Square of a component of a unit vector below which it passes no plane.
-const NONE: f64 = 1e-30;
+use crate::elements::tuning::TUNING;
 
 /// t: how far along the line, from `start` along the unit vector `along` of the block's frame. `half` are the block's
 /// half-sizes, `reach` is ρ + r.
@@ -29,7 +24,7 @@ pub fn nearest_to_block<'g>(
     let zero = length.builder().number(0.0);
     let within = |place: Scalar<'g>| place.max(zero).min(length);
     let middle = within(-along.dot(start));
-    let small = 2.0 * PARALLEL * reach / length;
+    let small = 2.0 * TUNING.line_along_face * reach / length;
     let (start, along) = (start.components(), along.components());
     let slope = |place: Scalar<'g>| {
         let mut slope = small * (place - middle);
@@ -44,7 +39,7 @@ pub fn nearest_to_block<'g>(
     let mut after = (length, slope(length).max(zero));
     for axis in 0..3 {
         let Some(half) = half[axis] else { continue };
-        let steepness = along[axis] / (along[axis] * along[axis] + NONE);
+        let steepness = along[axis] / (along[axis] * along[axis] + TUNING.no_passing);
         for face in [half, -half] {
             let place = within((face - start[axis]) * steepness);
             let slope = slope(place);

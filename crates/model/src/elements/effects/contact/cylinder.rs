@@ -24,18 +24,7 @@ use super::rod::Rod;
 use super::solid::{Gap, Segment};
 use super::touch::Touch;
 use crate::multibody::{Pair, Vector};
-
-/// ε of a face and a plane.
-const FLAT: f64 = 1e-3;
-
-/// Angle of a line to a face or the side below which it counts as parallel.
-const PARALLEL: f64 = 1e-4;
-
-/// Halvings of a line.
-const HALVINGS: i32 = 16;
-
-/// Square of the sine or cosine of an angle that counts as none.
-const NONE: f64 = 1e-30;
+use crate::elements::tuning::TUNING;
 
 /// A cylinder of the second body.
 #[derive(Clone, Copy, Debug)]
@@ -86,11 +75,11 @@ impl<'g> Cylinder<'g> {
         let (from, tangent, length) = line;
         let beside = Beside::of(self, pair, line, reach);
         let mut before = length.builder().number(0.0);
-        for halving in 1..=HALVINGS {
+        for halving in 1..=TUNING.halvings_of_line {
             let step = 0.5_f64.powi(halving) * length;
             before += step.only_where(-beside.slope(before + step).0);
         }
-        let after = before + 0.5_f64.powi(HALVINGS) * length;
+        let after = before + 0.5_f64.powi(TUNING.halvings_of_line) * length;
         let mut place = 0.5 * (before + after);
         for _ in 0..2 {
             let (slope, steepness) = beside.slope(place);
@@ -104,7 +93,7 @@ impl<'g> Cylinder<'g> {
         let (_, along) = self.axis.outward(pair);
         let lean = along.dot(normal);
         let [first, second] = self.axis.ends(pair).map(|end| normal.dot(end));
-        let across = (1.0 - lean * lean).max(self.radius.builder().number(NONE));
+        let across = (1.0 - lean * lean).max(self.radius.builder().number(TUNING.no_angle));
         first.min(second) - self.radius * across.sqrt()
     }
 
@@ -113,8 +102,8 @@ impl<'g> Cylinder<'g> {
         let (_, along) = self.axis.outward(pair);
         let lean = normal - along.dot(normal) * along;
         let square = lean.dot(lean);
-        let small = FLAT * FLAT;
-        let upright = FLAT * small / (square + small);
+        let small = TUNING.flat_face * TUNING.flat_face;
+        let upright = TUNING.flat_face * small / (square + small);
         let toward = lean + upright * pair.outward_of_second(self.axis.aside());
         let size = (toward.dot(toward) + 0.01 * upright * upright).sqrt();
         let down = self.radius * (toward / size);
@@ -152,14 +141,14 @@ impl<'g> Beside<'g> {
             let [first, second] = ends.map(|end| end.max(zero).min(length));
             0.5 * (first + second)
         };
-        let per_ahead = ahead[1] / (ahead[1] * ahead[1] + NONE);
+        let per_ahead = ahead[1] / (ahead[1] * ahead[1] + TUNING.no_angle);
         let along_side = middle([zero, height].map(|end| (end - ahead[0]) * per_ahead));
-        let per_aside = 1.0 / (aside[2] + NONE);
+        let per_aside = 1.0 / (aside[2] + TUNING.no_angle);
         let chord = aside[1] * aside[1] - aside[2] * (aside[0] - cylinder.radius * cylinder.radius);
         let half = chord.select(chord.select(chord, zero + 1.0).sqrt(), zero);
         let over_face = middle([-half, half].map(|half| (half - aside[1]) * per_aside));
         let middle = ahead[1] * ahead[1] * along_side + aside[2] * over_face;
-        let small = 2.0 * PARALLEL * reach / length;
+        let small = 2.0 * TUNING.line_along_cylinder * reach / length;
         Self { height, radius: cylinder.radius, ahead, aside, middle, small }
     }
 

@@ -5,9 +5,7 @@ use symdiff::{Builder, Scalar};
 use super::hull::{Hull, constant};
 use super::solid::Segment;
 use crate::multibody::Vector;
-
-/// Lengths as shares of the reach: normals of faces that are this equally far from a body are mixed.
-const MIXED: f64 = 0.1;
+use crate::elements::tuning::TUNING;
 
 /// A polyhedron in its body's frame.
 #[derive(Clone, Debug)]
@@ -52,7 +50,7 @@ impl<'g> Facets<'g> {
         let apart: Vec<Scalar<'g>> = self.faces.iter().map(|&(normal, height)| lowest(normal) - height).collect();
         let Some(farthest) = apart.iter().copied().reduce(Scalar::max) else { return Vector::zero(g) };
         let zero = g.number(0.0);
-        let width = MIXED * reach;
+        let width = TUNING.mixed_normals * reach;
         let shares = apart.into_iter().zip(&self.faces);
         let sum =
             shares.fold(Vector::zero(g), |sum, (apart, face)| sum + (width - (farthest - apart)).max(zero) * face.0);

@@ -15,9 +15,7 @@ use crate::elements::effects::Forces;
 use super::solid::Gap;
 use crate::grammar::OfPlace;
 use crate::multibody::{BuildError, OwnFunction, Pair, Vector};
-
-/// Steps of Newton's method.
-const STEPS: usize = 3;
+use crate::elements::tuning::TUNING;
 
 /// A height over a point.
 #[derive(Clone, Copy, Debug)]
@@ -56,7 +54,7 @@ impl<'g> Ground<'g> {
         let place = pair.first.orientation.matrix().transposed() * offset;
         let (across, height) = (place[0], place[self.up]);
         let mut along = across;
-        for _ in 0..STEPS {
+        for _ in 0..TUNING.steps_to_ground {
             let (h, slope, bend) = (self.height.at(along), self.slope.at(along), self.bend.at(along));
             let above = h - height;
             let value = along - across + slope * above;

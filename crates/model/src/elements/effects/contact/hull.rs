@@ -21,12 +21,7 @@ use super::solid::Gap;
 use crate::grammar::{Fields, Reader, SymbolTable};
 use crate::syntax::codes::Code;
 use crate::multibody::{Pair, Vector};
-
-/// Most points: each face, edge and corner has instructions of its own.
-const MOST: usize = 32;
-
-/// Points that lie this share of the hull's size beside a plane lie in it.
-const FLAT: f64 = 1e-9;
+use crate::elements::tuning::TUNING;
 
 type Point = [f64; 3];
 
@@ -99,15 +94,15 @@ impl Hull {
             for j in i + 1..points.len() {
                 for k in j + 1..points.len() {
                     let normal = cross(minus(points[j], points[i]), minus(points[k], points[i]));
-                    if dot(normal, normal).sqrt() <= FLAT * size * size {
+                    if dot(normal, normal).sqrt() <= TUNING.points_of_plane * size * size {
                         continue;
                     }
                     for normal in [unit(normal), scaled(unit(normal), -1.0)] {
                         let height = dot(normal, points[i]);
                         let above = |point: &Point| dot(normal, *point) - height;
-                        let is_known = faces.iter().any(|face| dot(face.normal, normal) > 1.0 - FLAT);
-                        if !is_known && points.iter().all(|point| above(point) <= FLAT * size) {
-                            let corners = (0..points.len()).filter(|&index| above(&points[index]) >= -FLAT * size);
+                        let is_known = faces.iter().any(|face| dot(face.normal, normal) > 1.0 - TUNING.points_of_plane);
+                        if !is_known && points.iter().all(|point| above(point) <= TUNING.points_of_plane * size) {
+                            let corners = (0..points.len()).filter(|&index| above(&points[index]) >= -TUNING.points_of_plane * size);
                             faces.push(Face { normal, height, corners: corners.collect() });
                         }
                     }
@@ -278,8 +273,8 @@ pub fn check<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: &Fields<'_>, ke
         reader.error(Code::MustBeCertain, at, message, help);
         return;
     }
-    if points.len() > MOST {
-        reader.error(Code::BadSurface, at, format!("a `{key}` has at most {MOST} points, not {}", points.len()), None);
+    if points.len() > TUNING.points_of_hull {
+        reader.error(Code::BadSurface, at, format!("a `{key}` has at most {} points, not {}", TUNING.points_of_hull, points.len()), None);
         return;
     }
     let Some(numbers) = numbers(reader, points) else { return };
@@ -305,6 +300,6 @@ fn numbers<S: SymbolTable>(reader: &Reader<'_, S>, points: &Points) -> Option<Ve
 
 /// How many edges the hull of points has; none where they make none.
 pub fn edges<S: SymbolTable>(reader: &Reader<'_, S>, points: &Points) -> usize {
-    let hull = numbers(reader, points).filter(|points| (4..=MOST).contains(&points.len())).and_then(Hull::of);
+    let hull = numbers(reader, points).filter(|points| (4..=TUNING.points_of_hull).contains(&points.len())).and_then(Hull::of);
     hull.map_or(0, |hull| hull.edges.len())
 }

@@ -20,9 +20,7 @@ use crate::elements::effects::laws::dry_friction::Resistance;
 use super::felt::Felt;
 use crate::elements::effects::laws::impact::Push;
 use crate::multibody::{Pair, Vector};
-
-/// Turns of less than this at a corner are none, over the outline's reach.
-const SMOOTH: f64 = 1e-6;
+use crate::elements::tuning::TUNING;
 
 /// Edges in the x and y of a frame.
 #[derive(Clone, Debug)]
@@ -193,7 +191,7 @@ impl<'g> Outline<'g> {
             return inside;
         }
         // Where an arc goes on as the edge before it did, there is no corner: rounding makes none.
-        inside - SMOOTH * self.reach
+        inside - TUNING.smooth_corner * self.reach
     }
 
     /// How fast the circle and the nearest edge part, m/s.

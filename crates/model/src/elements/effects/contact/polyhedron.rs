@@ -25,9 +25,7 @@ use super::touch::{Shape, Surface, Touch};
 use crate::grammar::{Reader, Span, SymbolTable};
 use crate::syntax::codes::Code;
 use crate::multibody::{Pair, Vector};
-
-/// Most pairs of edges: each has instructions of its own. Two boxes have 144.
-const MOST: usize = 400;
+use crate::elements::tuning::TUNING;
 
 /// Edges of a box.
 const EDGES: usize = 12;
@@ -137,10 +135,11 @@ pub fn check_edges<S: SymbolTable>(
     second: Option<&Points>,
 ) {
     let [first, second] = [first, second].map(|points| points.map_or(EDGES, |points| hull::edges(reader, points)));
-    if first * second > MOST {
+    if first * second > TUNING.pairs_of_edges {
         let message = format!(
-            "polyhedra of {first} and {second} edges have {} pairs of edges that may touch; a contact has at most {MOST}",
-            first * second
+            "polyhedra of {first} and {second} edges have {} pairs of edges that may touch; a contact has at most {}",
+            first * second,
+            TUNING.pairs_of_edges
         );
         let help = "leave out points, or say `corners` instead, which touch alone".to_owned();
         reader.error(Code::TooLarge, at, message, help);

@@ -18,9 +18,7 @@ use super::solid::Segment;
 use crate::grammar::{Fields, Reader, SymbolTable};
 use crate::syntax::codes::Code;
 use crate::multibody::{Pair, Vector};
-
-/// ε of two lines.
-const PARALLEL: f64 = 1e-4;
+use crate::elements::tuning::TUNING;
 
 /// A line in the second frame.
 #[derive(Clone, Copy, Debug)]
@@ -87,7 +85,7 @@ impl<'g> Rod<'g> {
         let zero = length.builder().number(0.0);
         let on_first = |place: Scalar<'g>| place.max(zero).min(length);
         let middle = 0.5 * (on_first(-aside) + on_first(cosine * self.length - aside));
-        let small = PARALLEL * PARALLEL;
+        let small = TUNING.parallel_rods * TUNING.parallel_rods;
         let place = (cosine * ahead - aside + small * middle) / (normal.dot(normal) + small);
         start + self.within(ahead + cosine * on_first(place)) * along
     }
@@ -119,13 +117,10 @@ impl<'g> Rod<'g> {
     }
 }
 
-/// Of one contact: each has instructions of its own.
-const MOST_CORNERS: usize = 256;
-
 /// Reports more corners than a contact has.
 pub fn check_corners<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: &Fields<'_>, corners: &Points) {
-    if corners.len() > MOST_CORNERS {
-        let message = format!("a contact has at most {MOST_CORNERS} `corners`, not {}", corners.len());
+    if corners.len() > TUNING.corners_of_contact {
+        let message = format!("a contact has at most {} `corners`, not {}", TUNING.corners_of_contact, corners.len());
         let help = "points inside of their hull touch nothing: leave them out".to_owned();
         reader.error(Code::MisplacedKey, fields.key_span("corners"), message, help);
     }

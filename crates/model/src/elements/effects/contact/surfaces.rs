@@ -5,9 +5,7 @@ use symdiff::{Binary, Formula};
 use crate::elements::effects::{Contact, ContactLine};
 use crate::elements::{Form, Shape, Surroundings};
 use crate::grammar::OfPlace;
-
-/// Straight pieces of ground.
-const PIECES: u32 = 160;
+use crate::elements::tuning::TUNING;
 
 fn number(value: f64) -> Formula {
     Formula::number(value)
@@ -101,9 +99,9 @@ fn two(ends: &[[Formula; 3]]) -> Option<[[Formula; 3]; 2]> {
 fn ground(height: &OfPlace, surroundings: Surroundings) -> Option<Vec<[Formula; 3]>> {
     let [from, to] = surroundings.along?;
     let at = |piece: u32| {
-        let x = number(from + (to - from) * f64::from(piece) / f64::from(PIECES));
+        let x = number(from + (to - from) * f64::from(piece) / f64::from(TUNING.pieces_of_ground));
         let height = height.0.with_names(|name| (name == OfPlace::VARIABLE).then(|| x.clone()));
         if surroundings.spatial { [x, number(0.0), height] } else { [x, height, number(0.0)] }
     };
-    Some((0..=PIECES).map(at).collect())
+    Some((0..=TUNING.pieces_of_ground).map(at).collect())
 }

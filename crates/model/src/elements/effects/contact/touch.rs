@@ -16,9 +16,7 @@ use super::outline::Outline;
 use super::rod::Rod;
 use super::solid::{Gap, Solid};
 use crate::multibody::{Pair, Vector};
-
-/// ε over R − r.
-const CENTRED: f64 = 1e-4;
+use crate::elements::tuning::TUNING;
 
 /// What the first body's surface is made of.
 pub enum Surface<'g> {
@@ -192,7 +190,7 @@ impl<'g> Shape<'g> {
             }
             Self::Hollow(clearance) => {
                 let (across, square) = across(pair, offset, axis);
-                let centred = CENTRED * clearance;
+                let centred = TUNING.centred_touch * clearance;
                 let smooth = square + centred * centred;
                 let distance = smooth.sqrt();
                 let outward = across / distance;

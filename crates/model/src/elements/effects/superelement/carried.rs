@@ -16,9 +16,8 @@
 use nalgebra::{DMatrix, DVector, Matrix3, SymmetricEigen, Vector3};
 
 use super::matrices::{Matrices, OF_NODE};
+use crate::elements::tuning::TUNING;
 
-/// By how much smaller than the largest a stiffness is none.
-const NONE: f64 = 1e-9;
 /// Rows and columns of a symmetric matrix.
 const SYMMETRIC: [[usize; 2]; 6] = [[0, 0], [1, 1], [2, 2], [1, 2], [0, 2], [0, 1]];
 
@@ -91,7 +90,7 @@ fn strained(matrices: &Matrices, strain: Matrix3<f64>) -> DVector<f64> {
     let scales = stiffness.diagonal().map(|own| if own > 0.0 { 1.0 / own.sqrt() } else { 0.0 });
     let scaled = DMatrix::from_fn(free.len(), free.len(), |i, j| scales[i] * stiffness[(i, j)] * scales[j]);
     let SymmetricEigen { eigenvectors, eigenvalues } = SymmetricEigen::new(scaled);
-    let none = NONE * eigenvalues.amax();
+    let none = TUNING.no_stiffness * eigenvalues.amax();
     let parts = (eigenvectors.tr_mul(&force.component_mul(&scales)))
         .zip_map(&eigenvalues, |part, stiffness| if stiffness > none { -part / stiffness } else { 0.0 });
     let least = (eigenvectors * parts).component_mul(&scales);

@@ -22,15 +22,12 @@ use crate::multibody::Vector;
 use crate::syntax::codes::Code;
 use crate::syntax::suggest::clip;
 use crate::syntax::yaml;
+use crate::elements::tuning::TUNING;
 
 /// Coordinates of a node: displacements, then rotations.
 pub const OF_NODE: usize = 6;
 /// Those of the plane, among them.
 const OF_PLANE: [usize; 3] = [0, 1, 5];
-/// Most modes of a body.
-const MOST_MODES: usize = 100;
-/// By how much of the sum of its terms a number may be off that has to vanish.
-const ROUNDING: f64 = 1e-4;
 
 /// Mass and stiffness of a flexible body.
 #[derive(Clone, Debug)]
@@ -97,7 +94,7 @@ impl Matrices {
 
     fn read_fields<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: &Fields<'_>) -> Option<Self> {
         let nodes = reader.required(fields, "nodes").and_then(|node| nodes(reader, node));
-        let modes = fields.get("modes").map_or(Some(0), |node| reader.count(node, 0, MOST_MODES));
+        let modes = fields.get("modes").map_or(Some(0), |node| reader.count(node, 0, TUNING.most_modes));
         let (mass, stiffness) = (reader.required(fields, "mass"), reader.required(fields, "stiffness"));
         let (nodes, modes) = (nodes?, modes?);
         let place = Places { nodes: nodes.len(), modes };
@@ -135,7 +132,7 @@ impl Matrices {
         let total = along(0);
         for &axis in axes {
             let found = along(axis);
-            if (found - total).abs() > ROUNDING * total {
+            if (found - total).abs() > TUNING.rounding_of_matrices * total {
                 let name = ["x", "y", "z"][axis];
                 let message = format!("the body's mass is {total:.6} kg along x, but {found:.6} kg along {name}");
                 return Some(("mass", message, "are the rows in the order of the reference page, and in SI units?"));
@@ -147,7 +144,7 @@ impl Matrices {
         for (motion, how, axis) in motions {
             let force = &self.stiffness * &motion;
             let size = self.sizes() * motion.abs();
-            if let Some(row) = used.iter().find(|&&row| force[row].abs() > ROUNDING * size[row]) {
+            if let Some(row) = used.iter().find(|&&row| force[row].abs() > TUNING.rounding_of_matrices * size[row]) {
                 let name = ["x", "y", "z"][axis];
                 let message = format!("the body is strained where it is {how} {name} as a whole (row {})", row + 1);
                 let help = "the stiffness of a free body vanishes for rigid motions; are `nodes` where the matrices have them?";
@@ -209,8 +206,8 @@ impl Places {
                 if column < row && full {
                     let above: f64 = matrix[(j, i)];
                     let size = above.abs().max(value.abs());
-                    if (above - value).abs() > ROUNDING * size
-                        && (above - value).abs() > ROUNDING * diagonal(&matrix, i, j)
+                    if (above - value).abs() > TUNING.rounding_of_matrices * size
+                        && (above - value).abs() > TUNING.rounding_of_matrices * diagonal(&matrix, i, j)
                     {
                         let (row, column) = (row + 1, column + 1);
                         let message = format!(

@@ -1,0 +1,75 @@
+//! Constants of the room `simulate: events`.
+
+use symdiff::constants::tuning;
+
+tuning! {
+    /// Motions that are cut at events.
+    "simulate: events" {
+        /// A sample at a share of the largest margin weighs as one on the surface over this share and it.
+        near_surface: f64 = 0.02, moves "bounds of motions with events";
+        /// Motions are followed so many times as long as they are asked for, so that an event beside the end is met by
+        /// all.
+        followed_share: f64 = 1.25, moves "bounds of motions with events";
+        /// Most events of a motion.
+        most_events: usize = 128, moves "bounds of motions with events";
+        /// Points between the ends of a step at which a cubic's first root is searched for.
+        root_points: usize = 16, moves "instants of events";
+        /// Bisections between two of the points at which a cubic's first root is searched for.
+        root_bisections: usize = 50, moves "instants of events";
+        /// A crossing after this share of a step is at its end.
+        at_the_end: f64 = 0.999, moves "instants of events";
+        /// First step, as a share of the duration.
+        first_step: f64 = 1e-4, moves "the steps of motions with events";
+        /// Longest step, as a share of the duration.
+        longest_step: f64 = 1.0 / 16.0, moves "the steps of motions with events";
+        /// The smallest step, as a share of the duration.
+        smallest_step: f64 = 1e-13, moves "the steps of motions with events";
+        /// A crossing behind this share of a step, or so little beyond its end, is solved for by Newton's method;
+        /// before it, the step is cut short first.
+        near_end: f64 = 0.98, moves "the steps of motions with events";
+        /// How far beyond an event a step ends, as a share of the duration.
+        beyond_event: f64 = 16.0 * f64::EPSILON, moves "the steps of motions with events";
+        /// How closely the end of a step beyond an event is solved for, as a share of the duration.
+        located: f64 = 4.0 * f64::EPSILON, moves "the steps of motions with events";
+        /// Largest uncertainty of an event's instant by rounding of the switch, as a share of the duration.
+        rounded_instant: f64 = 1e-9, moves "the steps of motions with events";
+        /// Corrections of an event's instant.
+        corrections_of_instant: usize = 12, moves "the steps of motions with events";
+        /// A switch that stays within this share of its largest value crosses by rounding.
+        zero_of_switch: f64 = 1e-13, moves "the steps of motions with events";
+        /// Switches that cross so soon after an event, as a share of the duration, are a part of it.
+        same_event: f64 = 1e-10, moves "the steps of motions with events";
+        /// Least share that a step is cut to at once where its error is large.
+        least_share: f64 = 0.3, moves "the steps of motions with events";
+        /// Share of a step over which the change of a rate is taken.
+        share_for_bend: f64 = 1e-3, moves "the steps of motions with events";
+        /// Rate beside an extreme that counts as none, as a share of the rates at the step's ends.
+        flat_rate: f64 = 1e-7, moves "the steps of motions with events";
+        /// Most steps that are tried of a motion without an event: a smooth motion that takes more is stiff.
+        most_steps: usize = 3000, moves "which motions are given up";
+        /// Most steps that are tried after an event: a contact that stays closed takes as many as its spring asks for.
+        most_steps_with_events: usize = 12_000, moves "which motions are given up";
+        /// Most steps that are tried where words end.
+        most_steps_behind_words: usize = 40_000, moves "which motions are given up";
+        /// Of its length, a step that passes over what a force does in space is tried with this share.
+        passing_share: f64 = 0.5, moves "the steps of motions with events";
+        /// Samples whose segments are passed together.
+        run_width: usize = 16, moves "time only";
+        /// An event so close to the end, as a share of the duration, may be before it for other samples.
+        beside_end: f64 = 0.02, moves "which motions are cut at events";
+        /// Instants that differ by no more than this share of the duration are the same.
+        same_instant: f64 = 1e-9, moves "which motions are cut at events";
+        /// Samples after the first of which one has to meet an event.
+        deciding_samples: usize = 8, moves "which motions are cut at events";
+        /// Most words, each a sequence of events, that the motions of a box may spell.
+        most_words: usize = 6, moves "which motions are cut at events";
+        /// Parameters, at most, of boxes with several words: each word costs a surrogate, and ranges of many
+        /// parameters take long.
+        most_of_parts: usize = 2, moves "which motions are cut at events";
+        /// Motions are cut if their words can be followed for at least this share of the duration: a polynomial that
+        /// is not cut there ends at the first event.
+        worthwhile_share: f64 = 0.25, moves "which motions are cut at events";
+        /// Motions are also cut if their words can be followed through at least so many events.
+        worthwhile_events: usize = 8, moves "which motions are cut at events";
+    }
+}

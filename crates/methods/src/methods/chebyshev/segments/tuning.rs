@@ -1,0 +1,108 @@
+//! Constants of the room `methods: chebyshev: segments`.
+
+use symdiff::constants::tuning;
+
+tuning! {
+    /// Chebyshev bounds through events.
+    "methods: chebyshev: segments" {
+        /// A sample at a share of the largest margin weighs as one on the surface over this share and it.
+        near_surface: f64 = 0.05, moves "Chebyshev bounds through events";
+        /// Highest total degree of a surface by the number of parameters; of more it is the last.
+        surface_degrees: [usize; 4] = [8, 5, 3, 2], moves "Chebyshev bounds through events";
+        /// Samples for each term of a fit.
+        samples_a_term: f64 = 1.5, moves "Chebyshev bounds through events";
+        /// Climbs for either end of an output.
+        climbs: usize = 3, moves "Chebyshev bounds through events";
+        /// Distance along some axis at which climbs in one segment begin, in ξ.
+        climbs_apart: f64 = 0.3, moves "Chebyshev bounds through events";
+        /// First radius of the trust region, in ξ.
+        radius: f64 = 0.15, moves "Chebyshev bounds through events";
+        /// First radius of the trust region in the share of the segment, and the largest.
+        radius_of_share: f64 = 0.25, moves "Chebyshev bounds through events";
+        /// Radius at which a climb ends, in ξ.
+        least_radius: f64 = 1e-6, moves "Chebyshev bounds through events";
+        /// Radii in ξ and in the share after a move that was none, over those before it.
+        shrinks: (f64, f64) = (0.5, 0.25), moves "Chebyshev bounds through events";
+        /// Radii in ξ and in the share after a move, over those before it.
+        grows: (f64, f64) = (2.0, 1.5), moves "Chebyshev bounds through events";
+        /// Moves of a climb, at most.
+        moves: usize = 120, moves "Chebyshev bounds through events";
+        /// Difference by which slopes are taken.
+        step_of_slopes: f64 = 1e-6, moves "Chebyshev bounds through events";
+        /// Moves back to a surface, at most.
+        returns: usize = 4, moves "Chebyshev bounds through events";
+        /// Share of a segment by which a surface may be missed.
+        missed: f64 = 1e-11, moves "Chebyshev bounds through events";
+        /// By how much of a segment a seed may be beyond its ends.
+        beyond_of_seed: f64 = 1e-6, moves "Chebyshev bounds through events";
+        /// A point is moved back inside of a surface by a little more than it is beyond: by this factor.
+        moved_back: f64 = 1.001, moves "Chebyshev bounds through events";
+        /// A point on a surface is inside by this share of the surface's error.
+        on_end: f64 = 1e-3, moves "Chebyshev bounds through events";
+        /// Rounds in which samples are added to parts.
+        rounds_of_samples: usize = 2, moves "Chebyshev bounds through events";
+        /// Layers that are cut off one after the other, at most.
+        layers: usize = 3, moves "Chebyshev bounds through events";
+        /// Rounds in which points that are far outside of samples are added.
+        coverings: usize = 6, moves "Chebyshev bounds through events";
+        /// A polynomial does that misses samples that are left out by no more than this share of how far they range.
+        enough: f64 = 1e-3, moves "Chebyshev bounds through events";
+        /// Values that differ by this share of them are the same.
+        rounding: f64 = 1e-9, moves "Chebyshev bounds through events";
+        /// Total degree with which polynomials of many parameters begin.
+        first_degree: usize = 2, moves "Chebyshev bounds through events";
+        /// Highest degree in a parameter of polynomials of many parameters.
+        highest_degree: u8 = 12, moves "Chebyshev bounds through events";
+        /// Most terms of a polynomial of many parameters.
+        most_terms: usize = 1000, moves "Chebyshev bounds through events";
+        /// Rate at which coefficients fall at least, where two of an axis tell less.
+        slowest_fall: f64 = 0.9, moves "Chebyshev bounds through events";
+        /// Degrees that are tried to a tolerance.
+        degrees: [usize; 6] = [2, 3, 4, 6, 8, 12], moves "Chebyshev bounds through events";
+        /// Parameters from which on terms are added one by one: a full grid of fewer takes less time.
+        many_parameters: usize = 3, moves "Chebyshev bounds through events";
+        /// Of many parameters, rows are bounded again where polynomials err by no more than so many times as would
+        /// meet a goal.
+        likely: f64 = 2.0, moves "Chebyshev bounds through events";
+        /// A layer reaches to this share of the depth of the part that it is cut off from: beside the surface
+        /// everything goes with the root of the depth.
+        layer: f64 = 1.0 / 150.0, moves "Chebyshev bounds through events";
+        /// Least total degree in a part.
+        least_degree: usize = 3, moves "Chebyshev bounds through events";
+        /// Highest total degree in a part, by the number of parameters; of more it is the last.
+        degrees_of_part: [usize; 4] = [8, 5, 3, 2], moves "Chebyshev bounds through events";
+        /// Samples for each parameter that show the parts of jets.
+        jet_samples: usize = 24, moves "Chebyshev bounds through events";
+        /// Difference by which slopes of surfaces are taken.
+        step_of_surfaces: f64 = 1e-6, moves "errors of Chebyshev bounds through events";
+        /// An end beside a surface is moved with it where it is nearer than so many times the surface's error.
+        near_end: f64 = 2.0, moves "errors of Chebyshev bounds through events";
+        /// Candidates of each round in which samples are added.
+        candidates: usize = 512, moves "Chebyshev bounds through events";
+        /// Corners of the box among the candidates for samples.
+        corners: usize = 16, moves "Chebyshev bounds through events";
+        /// Halvings of a line on which a level is looked for.
+        halvings_of_line: usize = 40, moves "Chebyshev bounds through events";
+        /// Of the samples that a part lacks on the side of a surface without the event, one in so many is beside it.
+        beside_surface: usize = 3, moves "Chebyshev bounds through events";
+        /// A fit at a point outside of the samples may be off by so many times, squared, the samples' error.
+        far_outside: f64 = 2.0, moves "Chebyshev bounds through events";
+        /// Points outside of the samples that are added at once.
+        covering: usize = 4, moves "Chebyshev bounds through events";
+        /// Distance of points that are added outside of the samples, in ξ.
+        covering_apart: f64 = 0.2, moves "Chebyshev bounds through events";
+        /// Intervals of the lattice along each axis, by the number of parameters; more have corners and points spread
+        /// over the box, each joined to the next.
+        intervals: [usize; 4] = [32, 12, 6, 4], moves "Chebyshev bounds through events";
+        /// Corners of the box from which a range of many parameters is searched.
+        corners_of_lattice: usize = 64, moves "Chebyshev bounds through events";
+        /// Points for each parameter from which a range of many parameters is searched.
+        spread_a_parameter: usize = 32, moves "Chebyshev bounds through events";
+        /// Points on a surface, at most.
+        most_on_surface: usize = 96, moves "Chebyshev bounds through events";
+        /// Corrections of a point on a surface along its edge.
+        corrections: usize = 5, moves "Chebyshev bounds through events";
+        /// How far the branch of a segment goes on beyond its ends, as a share of it.
+        beyond_branch: f64 = 0.02, moves "Chebyshev bounds through events";
+    }
+}
