@@ -5,7 +5,8 @@ use super::console::{BOLD, Console, count, file_names};
 use super::question::{answer, ask};
 use super::run::with_folder;
 use super::{Failure, Status, interrupt, load};
-use crate::export::{self, DESIGN_OVERLAY, rounded, shown_unit, write_design};
+use crate::export::tuning::TUNING as EXPORT;
+use crate::export::{DESIGN_OVERLAY, rounded, shown_unit, write_design};
 use crate::grammar::display_unit::ShownUnit;
 use crate::overview::{Align, Table};
 use crate::overview::{requirements, short};
@@ -90,7 +91,7 @@ fn overview(found: &DesignStudy) -> String {
         found.confirming,
     );
     text += &points(found);
-    if let Some(gain) = found.gain().filter(|gain| gain.abs() >= export::tuning::TUNING.shown_gain) {
+    if let Some(gain) = found.gain().filter(|gain| gain.abs() >= EXPORT.shown_gain) {
         let (value, words) = match found.is_priced() {
             true => ("cost", ["less", "more"]),
             false => ("worst case", ["better", "worse"]),

@@ -7,7 +7,8 @@ use crate::elements::Form;
 use crate::grammar::Mesh;
 use crate::results::Drawing;
 use crate::syntax::mesh_file::{Triangle, triangles};
-use crate::syntax::{self, regular};
+use crate::syntax::regular;
+use crate::syntax::tuning::TUNING as SYNTAX;
 
 /// Triangles of all meshes of a drawing; those beyond are left out.
 pub const MOST_TRIANGLES: usize = TUNING.most_triangles;
@@ -40,7 +41,6 @@ fn read(file: &str, beside: &Path) -> Option<Vec<Triangle>> {
     let folder = beside.canonicalize().ok()?;
     // A link may lead out of the folder.
     let within = |path: &Path| beside.join(path).canonicalize().ok().filter(|full| full.starts_with(&folder));
-    let found =
-        candidates.into_iter().find_map(|path| regular(&within(path)?, syntax::tuning::TUNING.mesh_bytes).ok())?;
+    let found = candidates.into_iter().find_map(|path| regular(&within(path)?, SYNTAX.mesh_bytes).ok())?;
     triangles(&found).ok()
 }

@@ -14,10 +14,11 @@ use super::names::Names;
 use super::text::Text;
 use super::tuning::TUNING;
 use crate::model::{Description, Opened, read_open};
+use crate::syntax::Diagnostics;
 use crate::syntax::text_file::read_text;
+use crate::syntax::tuning::TUNING as SYNTAX;
 use crate::syntax::within::OpenTexts;
 use crate::syntax::yaml::{self, Entry, Value};
-use crate::syntax::{self, Diagnostics};
 
 /// Keys of a file of assemblies.
 const KEYS_OF_PART: [&str; 3] = ["description", "include", "assemblies"];
@@ -136,7 +137,7 @@ impl Workspace {
             return path;
         }
         for candidate in self.including(part) {
-            let text = read_text(&candidate, syntax::tuning::TUNING.file_bytes).unwrap_or_default();
+            let text = read_text(&candidate, SYNTAX.file_bytes).unwrap_or_default();
             let open = open.with(candidate.clone(), text);
             self.read(candidate.clone(), &open, false);
             if self.models.get(&candidate).is_some_and(|own| own.files.contains(part)) {
@@ -165,7 +166,7 @@ impl Workspace {
             files.sort_unstable();
             files.truncate(TUNING.most_files);
             found.extend(files.into_iter().filter(|path| {
-                let text = read_text(path, syntax::tuning::TUNING.file_bytes).unwrap_or_default();
+                let text = read_text(path, SYNTAX.file_bytes).unwrap_or_default();
                 text.contains("include") && text.contains(name)
             }));
         }

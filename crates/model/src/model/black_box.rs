@@ -14,10 +14,10 @@ use crate::grammar::quantity::Dimension;
 use crate::grammar::report::Fields;
 use crate::keys;
 use crate::model::names::Reader;
-use crate::syntax;
 use crate::syntax::codes::Code;
 use crate::syntax::suggest::{self, clip};
 use crate::syntax::text_file::read_text;
+use crate::syntax::tuning::TUNING as SYNTAX;
 use crate::syntax::yaml::{Entry, Node, Value};
 
 /// Sections of a mechanism.
@@ -199,7 +199,7 @@ fn note_files(reader: &mut Reader, command: &[String], directory: Option<&Path>)
     for word in command {
         let path = directory.unwrap_or_else(|| Path::new("")).join(word);
         if path.is_file()
-            && let Ok(text) = read_text(&path, syntax::tuning::TUNING.file_bytes)
+            && let Ok(text) = read_text(&path, SYNTAX.file_bytes)
         {
             reader.diagnostics.sources.add(path.display().to_string(), text);
         }

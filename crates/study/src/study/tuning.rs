@@ -1,9 +1,5 @@
 //! Constants of the room `study`.
 
-use super::{
-    allocate, answers, attained, black_box, bounding, cost, design, drawing, ensemble, excited, explain, fit,
-    formulation, gradient, motion, price, reduced, statistics, stepping, verify,
-};
 use crate::{assemble, c_code, certificate, compile, methods, model, numerics, results, simulate, store};
 use symdiff::constants::{Constant, tuning};
 
@@ -38,26 +34,26 @@ pub fn tuning() -> Vec<Constant> {
         mbint_fmu::tuning(),
         crate::black_box::tuning::Tuning::constants(),
         Tuning::constants(),
-        formulation::tuning::Tuning::constants(),
-        stepping::tuning::Tuning::constants(),
-        price::tuning::Tuning::constants(),
-        ensemble::tuning::Tuning::constants(),
-        bounding::tuning::Tuning::constants(),
-        attained::tuning::Tuning::constants(),
-        excited::tuning::Tuning::constants(),
-        answers::tuning::Tuning::constants(),
-        reduced::tuning::Tuning::constants(),
-        statistics::tuning::Tuning::constants(),
-        gradient::tuning::Tuning::constants(),
-        fit::tuning::Tuning::constants(),
-        allocate::tuning::Tuning::constants(),
-        design::tuning::Tuning::constants(),
-        cost::tuning::Tuning::constants(),
-        verify::tuning::Tuning::constants(),
-        black_box::tuning::Tuning::constants(),
-        explain::tuning::Tuning::constants(),
-        drawing::tuning::Tuning::constants(),
-        motion::tuning::Tuning::constants(),
+        crate::study::formulation::tuning::Tuning::constants(),
+        crate::study::stepping::tuning::Tuning::constants(),
+        crate::study::price::tuning::Tuning::constants(),
+        crate::study::ensemble::tuning::Tuning::constants(),
+        crate::study::bounding::tuning::Tuning::constants(),
+        crate::study::attained::tuning::Tuning::constants(),
+        crate::study::excited::tuning::Tuning::constants(),
+        crate::study::answers::tuning::Tuning::constants(),
+        crate::study::reduced::tuning::Tuning::constants(),
+        crate::study::statistics::tuning::Tuning::constants(),
+        crate::study::gradient::tuning::Tuning::constants(),
+        crate::study::fit::tuning::Tuning::constants(),
+        crate::study::allocate::tuning::Tuning::constants(),
+        crate::study::design::tuning::Tuning::constants(),
+        crate::study::cost::tuning::Tuning::constants(),
+        crate::study::verify::tuning::Tuning::constants(),
+        crate::study::black_box::tuning::Tuning::constants(),
+        crate::study::explain::tuning::Tuning::constants(),
+        crate::study::drawing::tuning::Tuning::constants(),
+        crate::study::motion::tuning::Tuning::constants(),
     ]
     .concat()
 }

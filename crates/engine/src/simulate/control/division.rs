@@ -4,7 +4,8 @@ use std::ops::Range;
 
 use super::schedule::Schedule;
 use super::tuning::TUNING;
-use crate::simulate::time_functions::{self, TimeFunctions, Work};
+use crate::simulate::time_functions::tuning::TUNING as TIME_FUNCTIONS;
+use crate::simulate::time_functions::{TimeFunctions, Work};
 
 /// A schedule with its steps divided.
 #[derive(Clone, Debug)]
@@ -35,7 +36,7 @@ impl TimeFunctions {
         let mut ends = Vec::with_capacity(schedule.rows - 1);
         for row in 1..schedule.rows {
             let mut list = Vec::new();
-            if division.work.enclosures() > time_functions::tuning::TUNING.most_enclosures {
+            if division.work.enclosures() > TIME_FUNCTIONS.most_enclosures {
                 left = 0;
             }
             if rows.next_if_eq(&row).is_some() && left > 0 {
@@ -78,7 +79,7 @@ impl Division<'_> {
             None => rows.clone().flat_map(|row| schedule.steps_to(row)).map(|(h, _)| h).fold(0.0, f64::max),
         };
         let span = (schedule.time(rows.start - 1), schedule.time(rows.end - 1));
-        if self.functions.are_resolved(span, longest, time_functions::tuning::TUNING.too_fast, &mut self.work) {
+        if self.functions.are_resolved(span, longest, TIME_FUNCTIONS.too_fast, &mut self.work) {
             return;
         }
         if rows.len() == 1 {
@@ -94,7 +95,7 @@ impl Division<'_> {
     fn divide_row(&mut self, row: usize, most: usize, ends: &mut Vec<f64>) {
         for (h, end) in self.schedule.steps_to(row) {
             let span = (end - h, end);
-            if self.functions.are_resolved(span, h, time_functions::tuning::TUNING.too_fast, &mut self.work) {
+            if self.functions.are_resolved(span, h, TIME_FUNCTIONS.too_fast, &mut self.work) {
                 ends.push(end);
             } else if ends.len() > most || !self.divide(end - h, end, self.functions.halvings(), most, ends) {
                 self.unresolved_from.get_or_insert(row);
@@ -107,8 +108,7 @@ impl Division<'_> {
 
     /// Divides a step; whether all its parts resolve the functions.
     fn divide(&mut self, a: f64, b: f64, halvings: u32, most: usize, ends: &mut Vec<f64>) -> bool {
-        let resolved =
-            self.functions.are_resolved((a, b), b - a, time_functions::tuning::TUNING.resolved, &mut self.work);
+        let resolved = self.functions.are_resolved((a, b), b - a, TIME_FUNCTIONS.resolved, &mut self.work);
         if resolved || halvings == 0 || ends.len() > most {
             ends.push(b);
             return resolved;

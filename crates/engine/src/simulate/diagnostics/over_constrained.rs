@@ -8,7 +8,8 @@ use nalgebra::{DMatrix, DVector};
 use super::tuning::TUNING;
 use crate::assemble::{ResidualUnit, System};
 use crate::compile::StartProgram;
-use crate::simulate::start::{self, dependent_rows, jacobian_rows};
+use crate::simulate::start::tuning::TUNING as START;
+use crate::simulate::start::{dependent_rows, jacobian_rows};
 
 /// Coordinates, constraints, and which of these the others imply, near a state (the layout's registers); `None` where
 /// all can hold.
@@ -24,7 +25,7 @@ pub fn over_constrained(system: &System, start: &StartProgram, near: &[f64]) -> 
         .into_iter()
         .map(|row| row.into_iter().filter(|(index, _)| !is_given(*index)).collect())
         .collect();
-    let dependent = dependent_rows(&rows, start::tuning::TUNING.dependent_row);
+    let dependent = dependent_rows(&rows, START.dependent_row);
     let &first = dependent.first()?;
     let (coordinates, constraints) = (system.q.len(), system.lambda.len());
     let given = match (0..coordinates).filter(|&index| is_given(index)).count() {

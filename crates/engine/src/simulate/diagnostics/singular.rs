@@ -8,7 +8,8 @@
 use super::tuning::TUNING;
 use crate::assemble::ConstraintId;
 use crate::simulate::simulator::Simulator;
-use crate::simulate::start::{self, jacobian_rows, row_independence, usual_row_sizes};
+use crate::simulate::start::tuning::TUNING as START;
+use crate::simulate::start::{jacobian_rows, row_independence, usual_row_sizes};
 use crate::simulate::step::Stepper;
 
 /// A singular configuration that was passed.
@@ -113,7 +114,7 @@ impl<'s> SingularWatch<'s> {
         let rows = jacobian_rows(&self.simulator.system, &self.simulator.start, &self.between(time));
         let redundant = &self.simulator.mobility.redundant;
         let constraints = (0..rows.len()).map(ConstraintId::new);
-        let independence = constraints.zip(row_independence(&rows, &self.usual, start::tuning::TUNING.dependent_row));
+        let independence = constraints.zip(row_independence(&rows, &self.usual, START.dependent_row));
         independence.filter(|(constraint, _)| !redundant.contains(constraint)).collect()
     }
 

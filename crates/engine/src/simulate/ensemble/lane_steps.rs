@@ -9,7 +9,8 @@ use symdiff::Tile;
 
 use super::tuning::TUNING;
 use crate::compile::Tapes;
-use crate::simulate::control::{self, Adaptive, Controller, SwitchWatch};
+use crate::simulate::control::tuning::TUNING as CONTROL;
+use crate::simulate::control::{Adaptive, Controller, SwitchWatch};
 use crate::simulate::features::FeatureWatch;
 use crate::simulate::interruption::Interruption;
 use crate::simulate::simulator::Simulator;
@@ -88,8 +89,7 @@ impl<'s> LaneSteps<'s> {
             let size = if crossing.is_some() { error.whole } else { error.size };
             let ratio = self.controller.error_ratio(size, h);
             let features = self.features.as_mut().filter(|_| converged[lane] && h > self.controller.event());
-            let passes = features
-                .is_some_and(|features| features.change(stepper, lane, h, end, control::tuning::TUNING.most_change));
+            let passes = features.is_some_and(|features| features.change(stepper, lane, h, end, CONTROL.most_change));
             let within =
                 converged[lane] && !passes && ratio <= 1.0 && crossing.is_none_or(|crossing| crossing.is_at_the_end());
             let attached = self.alone[lane].as_ref().is_none_or(|alone| alone.h >= h && !alone.has_switched());

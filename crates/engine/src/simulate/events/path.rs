@@ -13,9 +13,9 @@ use crate::numerics::Sample;
 use crate::simulate::control::SwitchWatch;
 use crate::simulate::ensemble::RowClosure;
 use crate::simulate::error::SimulationError;
-use crate::simulate::explicit;
 use crate::simulate::explicit::movement::Movement;
 use crate::simulate::explicit::runge_kutta::RungeKutta;
+use crate::simulate::explicit::tuning::TUNING as EXPLICIT;
 use crate::simulate::features::{FeatureWork, Features, Passage};
 use crate::simulate::simulator::Simulator;
 
@@ -146,17 +146,15 @@ impl<'s> Path<'s> {
                     None => ratio = f64::INFINITY,
                 }
             }
-            let factor = explicit::tuning::TUNING.safety * math::pow(ratio.max(1e-12), -0.125);
+            let factor = EXPLICIT.safety * math::pow(ratio.max(1e-12), -0.125);
             let passes_over = ratio <= 1.0 && self.passes_over(begin, end);
             if ratio > 1.0 || passes_over {
                 self.closure.forget();
                 self.h = step
                     * match ratio {
                         _ if passes_over => TUNING.passing_share,
-                        _ if ratio.is_finite() => {
-                            factor.clamp(explicit::tuning::TUNING.least_factor, explicit::tuning::TUNING.safety)
-                        }
-                        _ => explicit::tuning::TUNING.least_factor,
+                        _ if ratio.is_finite() => factor.clamp(EXPLICIT.least_factor, EXPLICIT.safety),
+                        _ => EXPLICIT.least_factor,
                     };
                 cut = None;
                 continue;
@@ -165,9 +163,7 @@ impl<'s> Path<'s> {
                 Some((uncut, _)) if event.is_some() => uncut,
                 // A step cut short at the goal is no reason against the longer one.
                 _ if end == goal && step < self.h => self.h,
-                _ => {
-                    step * factor.clamp(explicit::tuning::TUNING.least_factor, explicit::tuning::TUNING.largest_factor)
-                }
+                _ => step * factor.clamp(EXPLICIT.least_factor, EXPLICIT.largest_factor),
             };
             return Ok(PathStep { begin, end, event });
         }

@@ -14,7 +14,7 @@ use crate::numerics::{BoundaryMargins, CutMotions, Sample, SegmentMotions};
 use crate::simulate::control::{Schedule, Steps};
 use crate::simulate::ensemble::{Channel, Observed, Reduction, RowClosure, Stop, stops_of_lost};
 use crate::simulate::error::SimulationError;
-use crate::simulate::explicit;
+use crate::simulate::explicit::tuning::TUNING as EXPLICIT;
 use crate::simulate::integrator::Integrator;
 use crate::simulate::interruption::Interruption;
 use crate::simulate::simulator::Simulator;
@@ -270,9 +270,8 @@ impl RowTile<'_> {
             let steps = &word.steps[recorded.number];
             let begins = std::iter::once(0.0).chain(steps.iter().copied());
             let of_step = |(begin, end): (f64, f64)| {
-                (0..=explicit::tuning::TUNING.places_of_reduced).map(move |part| {
-                    begin + (end - begin) * part as f64 / explicit::tuning::TUNING.places_of_reduced as f64
-                })
+                (0..=EXPLICIT.places_of_reduced)
+                    .map(move |part| begin + (end - begin) * part as f64 / EXPLICIT.places_of_reduced as f64)
             };
             for share in begins.zip(steps.iter().copied()).flat_map(of_step) {
                 for lane in 0..width {

@@ -6,7 +6,8 @@ use symdiff::math;
 use super::controlling::Tiles;
 use super::tuning::TUNING;
 use crate::numerics::Sample;
-use crate::simulate::control::{self, Integration, Schedule};
+use crate::simulate::control::tuning::TUNING as CONTROL;
+use crate::simulate::control::{Integration, Schedule};
 use crate::simulate::error::SimulationError;
 use crate::simulate::interruption::Interruption;
 use crate::simulate::sampling::Instants;
@@ -64,7 +65,7 @@ pub fn explicit_schedule(
     let functions = functions.map(|functions| ResolvingSteps::new(functions, &simulator.system, most)).transpose();
     let Ok(mut functions) = functions else { return too_many };
     let instants = Instants::of(simulator);
-    let (mut ends, mut time, mut h) = (Vec::new(), 0.0, control::tuning::TUNING.first_step * output_step);
+    let (mut ends, mut time, mut h) = (Vec::new(), 0.0, CONTROL.first_step * output_step);
     let (mut stiff, mut others) = (0, 0);
     // The step that a switch cut short.
     let mut uncut: Option<f64> = None;

@@ -4,7 +4,8 @@ use symdiff::Tile;
 
 use super::tuning::TUNING;
 use crate::assemble::System;
-use crate::compile::{self, Layout, PivotSample, Tapes, compile_start};
+use crate::compile::tuning::TUNING as COMPILE;
+use crate::compile::{Layout, PivotSample, Tapes, compile_start};
 
 /// Evenly spread numbers in [−1, 1) by an additive recurrence, the same on every machine.
 pub fn spread(series: usize, index: usize) -> f64 {
@@ -34,7 +35,7 @@ pub fn pivot_samples(
     layout: &Layout,
     nominal: &[f64],
     h: f64,
-) -> [PivotSample; compile::tuning::TUNING.pivot_samples] {
+) -> [PivotSample; COMPILE.pivot_samples] {
     std::array::from_fn(|series| {
         let mut values = nominal.to_vec();
         values[layout.step] = h;
@@ -44,7 +45,7 @@ pub fn pivot_samples(
                 let scale = system.coordinates[index].scale;
                 values[layout.q.start + index] += TUNING.pivot_sample_spread * scale * spread(series, index);
                 values[layout.v.start + index] +=
-                    TUNING.pivot_sample_spread * scale * spread(series + compile::tuning::TUNING.pivot_samples, index);
+                    TUNING.pivot_sample_spread * scale * spread(series + COMPILE.pivot_samples, index);
             }
         }
         PivotSample { values }

@@ -16,7 +16,8 @@ use super::tuning::TUNING;
 use crate::assemble::{ConstraintId, CoordinateId, System};
 use crate::compile::{EquationsProgram, Layout, compile_equations};
 use crate::numerics::{RowSpace, combined, dot};
-use crate::simulate::{self, start};
+use crate::simulate::start::tuning::TUNING as START;
+use crate::simulate::tuning::TUNING as SIMULATE;
 
 /// Finds equilibria of a mechanism.
 #[derive(Clone, Debug)]
@@ -83,24 +84,17 @@ impl Equilibrium {
         let at_once = self.find(state, parameters);
         let is_far = |found: &Vec<f64>| {
             let change = |(register, scale): (usize, &f64)| ((found[register] - state[register]) / scale).abs();
-            !self
-                .program
-                .layout
-                .q
-                .clone()
-                .zip(&self.scale)
-                .map(change)
-                .all(|change| change <= start::tuning::TUNING.far_sample)
+            !self.program.layout.q.clone().zip(&self.scale).map(change).all(|change| change <= START.far_sample)
         };
         if at_once.as_ref().is_ok_and(|found| !is_far(found)) {
             return at_once;
         }
         let mut followed = state.to_vec();
-        for step in 1..=simulate::tuning::TUNING.continuation_steps {
-            let share = step as f64 / simulate::tuning::TUNING.continuation_steps as f64;
+        for step in 1..=SIMULATE.continuation_steps {
+            let share = step as f64 / SIMULATE.continuation_steps as f64;
             let between: Vec<f64> =
                 nominal.iter().zip(parameters).map(|(nominal, value)| nominal + share * (value - nominal)).collect();
-            let last = if step == simulate::tuning::TUNING.continuation_steps { parameters } else { &between };
+            let last = if step == SIMULATE.continuation_steps { parameters } else { &between };
             match self.find(&followed, last) {
                 Ok(found) => followed = found,
                 Err(_) => return at_once,
@@ -123,7 +117,7 @@ impl Equilibrium {
             let before = at.get(layout.q.clone());
             let Some(step) = balance.step(&self.states) else { break };
             let size = self.size(&step, &before);
-            let settles = size <= start::tuning::TUNING.settled || size <= TUNING.stalled && size >= 0.5 * last;
+            let settles = size <= START.settled || size <= TUNING.stalled && size >= 0.5 * last;
             last = if step.is_newton { size } else { f64::INFINITY };
             let mut share = 1.0;
             for _ in 0..TUNING.most_halvings {

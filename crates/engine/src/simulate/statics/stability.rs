@@ -6,7 +6,7 @@ use super::configuration::{Linearised, reduced};
 use super::tuning::TUNING;
 use crate::assemble::CoordinateId;
 use crate::numerics::RowSpace;
-use crate::simulate::modal;
+use crate::simulate::modal::tuning::TUNING as MODAL;
 
 /// What the stiffness says of an equilibrium.
 #[derive(Clone, Debug, PartialEq)]
@@ -49,7 +49,7 @@ impl Stability {
 fn eigen(stiffness: &DMatrix<f64>, mass: &DMatrix<f64>, basis: &[Vec<f64>]) -> Option<(Vec<f64>, Vec<Vec<f64>>)> {
     let symmetric = |matrix: DMatrix<f64>| (&matrix + matrix.transpose()) * 0.5;
     let (stiffness, mut mass) = (symmetric(reduced(stiffness, basis)), symmetric(reduced(mass, basis)));
-    let least = modal::tuning::TUNING.least_mass * mass.trace();
+    let least = MODAL.least_mass * mass.trace();
     (0..basis.len()).for_each(|index| mass[(index, index)] += least);
     let root = mass.cholesky()?.unpack();
     let half = root.solve_lower_triangular(&stiffness)?;

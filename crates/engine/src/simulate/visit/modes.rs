@@ -9,7 +9,8 @@ use crate::simulate::ensemble::{Channel, EnsembleRun, Observed, Reduction, Stop}
 use crate::simulate::error::{SimulationError, assembly_error};
 use crate::simulate::integrator::Integrator;
 use crate::simulate::interruption::Interruption;
-use crate::simulate::modal::{self, ModesThere, Vibrations};
+use crate::simulate::modal::tuning::TUNING as MODAL;
+use crate::simulate::modal::{ModesThere, Vibrations};
 use crate::simulate::simulator::Simulator;
 use crate::simulate::start::Assembly;
 
@@ -91,7 +92,7 @@ impl Simulator {
         is_alone: bool,
     ) -> Option<ModesThere> {
         let (direct, least) = vibrations.place(state, Some(nominal))?;
-        if least >= modal::tuning::TUNING.alike_shapes || !is_alone {
+        if least >= MODAL.alike_shapes || !is_alone {
             return Some(direct);
         }
         let mut known = nominal.clone();

@@ -4,11 +4,11 @@ use rayon::prelude::*;
 
 use super::sensitivity::{Predicted, SensitivityAnalysis};
 use super::tuning::TUNING;
-use crate::methods;
 use crate::methods::ensemble::{Ensemble, EnsembleError, Observed, Sampling, Simulated, Until};
 use crate::methods::followed::Sensitivity;
 use crate::methods::kept::KeptRow;
 use crate::methods::result::{BandBuilder, PolynomialEstimate};
+use crate::methods::tuning::TUNING as METHODS;
 use crate::methods::validation::Validation;
 use crate::numerics::{
     Extent, PolynomialRange, Range, Sample, SparseWork, Surrogate, SurrogateWork, corners, truncation,
@@ -45,7 +45,7 @@ impl Polynomials<'_> {
         let mut found = analysis.of_row(self, &extents);
         for (own, extent) in found.iter_mut().zip(&extents) {
             let size = extent.range.lower.abs().max(extent.range.upper.abs());
-            if extent.range.width() <= rounding.max(methods::tuning::TUNING.rounding_of_width * size) {
+            if extent.range.width() <= rounding.max(METHODS.rounding_of_width * size) {
                 own.main.iter_mut().chain(&mut own.total).for_each(|share| *share = 0.0);
             }
         }

@@ -7,11 +7,11 @@ use super::Writer;
 use crate::expand::tuning::TUNING;
 use crate::grammar::mentions::NameKind;
 use crate::keys;
-use crate::syntax;
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use crate::syntax::suggest::clip;
+use crate::syntax::tuning::TUNING as SYNTAX;
 use crate::syntax::yaml::{self, Entry, Node, Value};
 
 /// Files that are read, with their names from the model's folder.
@@ -69,7 +69,7 @@ fn file(writer: &mut Writer, path: PathBuf, span: &Span, included: &mut Included
     }
     included.read.push(path.clone());
     let full = writer.report.files.full(&path);
-    let text = match writer.report.files.read(&full, syntax::tuning::TUNING.file_bytes) {
+    let text = match writer.report.files.read(&full, SYNTAX.file_bytes) {
         Ok(text) => text,
         Err(error) => {
             let help = error.help.clone().or_else(|| Some("it is looked for in the model's folder".to_owned()));

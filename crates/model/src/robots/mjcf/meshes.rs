@@ -7,11 +7,11 @@ use super::values::Values;
 use crate::robots::algebra;
 use crate::robots::meshes::{self, FORMATS, Faults, Measured, Triangle, Way};
 use crate::robots::tuning::TUNING;
-use crate::syntax;
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::suggest::{self, clip};
 use crate::syntax::text_file::regular;
+use crate::syntax::tuning::TUNING as SYNTAX;
 
 /// What the mesh of a name makes up; reports why nothing does.
 pub fn measured(values: &mut Values, named: &Attribute) -> Option<Measured> {
@@ -107,7 +107,7 @@ fn from_file(values: &mut Values, file: &Attribute) -> Option<Vec<Triangle>> {
             return None;
         }
     };
-    let bytes = match regular(&path, syntax::tuning::TUNING.mesh_bytes) {
+    let bytes = match regular(&path, SYNTAX.mesh_bytes) {
         Ok(bytes) => bytes,
         Err(error) => {
             values.error(

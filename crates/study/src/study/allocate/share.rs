@@ -7,7 +7,8 @@ use crate::numerics::statistics::{
     Mixture, REPLICATES, least_at_distance, normal_quantile, shares_below, weighted_quantile,
 };
 use crate::numerics::{Linear, Power};
-use crate::study::statistics::{self, Laws};
+use crate::study::statistics::Laws;
+use crate::study::statistics::tuning::TUNING as STATISTICS;
 
 /// What a share of samples leaves of all requirements.
 pub struct Share<'s> {
@@ -81,7 +82,7 @@ impl<'s> Share<'s> {
             order.sort_by(|&a, &b| own[a].total_cmp(&own[b]).then(a.cmp(&b)));
             let found = order
                 .iter()
-                .take(statistics::tuning::TUNING.starts_of_places)
+                .take(STATISTICS.starts_of_places)
                 .filter_map(|&start| least_at_distance(&points[start], distance, &slack));
             places.extend(found.map(|index| (slack(std::slice::from_ref(&index))[0], index)));
         }

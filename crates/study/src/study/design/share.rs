@@ -6,7 +6,7 @@ use super::tuning::TUNING;
 use super::worst::{Assessed, around, quotients};
 use crate::numerics::Linear;
 use crate::numerics::statistics::{Mixture, weighted_quantile};
-use crate::study::allocate;
+use crate::study::allocate::tuning::TUNING as ALLOCATE;
 use crate::study::statistics::Laws;
 
 /// Of a share of the samples of the parameters' laws, which go with the nominal values.
@@ -52,10 +52,9 @@ impl<'s> Yield<'s> {
         let mut order: Vec<usize> = (0..values.len()).collect();
         order.sort_by(|&a, &b| values[a].total_cmp(&values[b]).then(a.cmp(&b)));
         let index = |times: f64| ((times * self.may_fail * values.len() as f64) as usize).min(values.len());
-        let (from, to) =
-            (index(allocate::tuning::TUNING.beside_quantile[0]), index(allocate::tuning::TUNING.beside_quantile[1]));
-        if to < from + allocate::tuning::TUNING.fewest_beside {
-            order[..allocate::tuning::TUNING.fewest_beside].to_vec()
+        let (from, to) = (index(ALLOCATE.beside_quantile[0]), index(ALLOCATE.beside_quantile[1]));
+        if to < from + ALLOCATE.fewest_beside {
+            order[..ALLOCATE.fewest_beside].to_vec()
         } else {
             order[from..to].to_vec()
         }

@@ -8,7 +8,8 @@ use super::tuning::TUNING;
 use super::{DesignError, Question};
 use crate::methods::Method;
 use crate::model::Requirement;
-use crate::study::allocate::{self, run_simulations};
+use crate::study::allocate::run_simulations;
+use crate::study::allocate::tuning::TUNING as ALLOCATE;
 use crate::study::{Kept, Options, RunError, subsystems};
 
 /// A surrogate of all margins over a region of nominal values and the tolerances about them.
@@ -92,14 +93,13 @@ impl Surface {
     pub fn at_instants(&self, samples: &[Vec<f64>]) -> Vec<f64> {
         let all = self.instants.last().map_or(0, |last| last.end);
         let Some(margins) = self.kept.margins() else {
-            return vec![allocate::tuning::TUNING.unknown_margin; all * samples.len()];
+            return vec![ALLOCATE.unknown_margin; all * samples.len()];
         };
         let mut slacks = margins.values(samples);
         for (requirement, instants) in self.instants.iter().enumerate() {
             let (reserve, scale) = (self.reserves[requirement], self.scales[requirement]);
             for slack in &mut slacks[instants.start * samples.len()..instants.end * samples.len()] {
-                *slack =
-                    if slack.is_nan() { allocate::tuning::TUNING.unknown_margin } else { (*slack - reserve) / scale };
+                *slack = if slack.is_nan() { ALLOCATE.unknown_margin } else { (*slack - reserve) / scale };
             }
         }
         slacks

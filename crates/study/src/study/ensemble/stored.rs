@@ -10,7 +10,7 @@ use crate::methods::{Ensemble, Observed, Sampling, Simulated, Until, lines, scan
 use crate::numerics::{Sample, ScanBounds, ScanGrid};
 use crate::simulate::{SimulationError, Steps};
 use crate::store::{PartReader, PartStore, ScanPart, StoreError, Task};
-use crate::study::price;
+use crate::study::price::tuning::TUNING as PRICE;
 
 /// Where the simulations of a study are stored.
 #[derive(Clone, Copy)]
@@ -230,11 +230,11 @@ fn deliver(
 /// What a task is expected to take on one core, s.
 fn seconds_of(motions: &Motions, task: &Task) -> f64 {
     if motions.source.is_some() {
-        return task.samples.len() as f64 * price::tuning::TUNING.answer_seconds;
+        return task.samples.len() as f64 * PRICE.answer_seconds;
     }
     let schedule = motions.steps().schedule;
     let steps = (schedule.steps_before(schedule.rows.saturating_sub(1)) * schedule.integration.steps()) as f64;
-    task.samples.len() as f64 * steps * motions.instructions_of_step() * price::tuning::TUNING.instruction_seconds
+    task.samples.len() as f64 * steps * motions.instructions_of_step() * PRICE.instruction_seconds
 }
 
 /// Size of a task's part.

@@ -2,7 +2,8 @@
 
 use super::Adaptation;
 use super::tuning::TUNING;
-use crate::methods::chebyshev::composition::{self, Composer, NodeMotions, Row};
+use crate::methods::chebyshev::composition::tuning::TUNING as COMPOSITION;
+use crate::methods::chebyshev::composition::{Composer, NodeMotions, Row};
 use crate::methods::chebyshev::detail::Detail;
 use crate::methods::chebyshev::estimator::RangeEstimator;
 use crate::methods::chebyshev::range_search::Previous;
@@ -48,7 +49,7 @@ impl Adaptation<'_> {
             self.ensemble,
             sub_box,
             surrogate,
-            Looks { rows: &rows, velocities: false, block: composition::tuning::TUNING.rows_in_order },
+            Looks { rows: &rows, velocities: false, block: COMPOSITION.rows_in_order },
             look,
         )?;
         Ok((0..nodes.len()).map(|node| largest(by_row.iter().map(|errors| errors[node]))).collect())
@@ -103,7 +104,7 @@ impl Adaptation<'_> {
             self.ensemble,
             sub_box,
             &surrogate,
-            Looks { rows, velocities: false, block: composition::tuning::TUNING.rows_in_order },
+            Looks { rows, velocities: false, block: COMPOSITION.rows_in_order },
             look,
         )
     }
@@ -132,8 +133,7 @@ impl Adaptation<'_> {
             (found, kept)
         };
         // Errors alone are asked for of rows that are not neighbours.
-        let (velocities, block) =
-            if detail == Detail::Errors { (false, 1) } else { (true, composition::tuning::TUNING.rows_in_order) };
+        let (velocities, block) = if detail == Detail::Errors { (false, 1) } else { (true, COMPOSITION.rows_in_order) };
         let looks = Looks { rows, velocities, block };
         let found = rows_of(&mut self.composer, self.ensemble, sub_box, &surrogate, looks, look)?;
         let (found, kept): (Vec<Vec<Estimate>>, Vec<Option<KeptRow>>) = found.into_iter().unzip();

@@ -4,9 +4,9 @@ use std::convert::Infallible;
 
 use super::tuning::TUNING;
 use super::{Found, Row};
-use crate::methods;
 use crate::methods::chebyshev::range_search::{RangeSearch, block, extent};
 use crate::methods::expansion::Moves;
+use crate::methods::tuning::TUNING as METHODS;
 use crate::methods::validation::{HeldOut, ValidationTable};
 use crate::numerics::{Extent, Extremes, extremes_near, largest, step_error, surrogate_error, truncation};
 
@@ -64,7 +64,7 @@ impl Row<'_> {
             if expanded[output] {
                 let own = self.own_polynomials(&[output], points);
                 let tail = truncation(self.surrogate.basis(), self.own_coefficients(output));
-                let between = if self.ensemble.has_kink(output) { methods::tuning::TUNING.between_kinks } else { 1.0 };
+                let between = if self.ensemble.has_kink(output) { METHODS.between_kinks } else { 1.0 };
                 return found.gap + largest([between * surrogate_error(&own, &simulated), tail]);
             }
             let compared = self.compared_extreme(output, points, &simulated);
@@ -81,7 +81,7 @@ impl Row<'_> {
         if !self.ensemble.is_extreme(output) {
             return f64::INFINITY;
         }
-        methods::tuning::TUNING.between_kinks * surrogate_error(&self.predict_some(&[output], points), simulated)
+        METHODS.between_kinks * surrogate_error(&self.predict_some(&[output], points), simulated)
     }
 
     /// The time steps' errors of the outputs' ranges: how far those of the coordinates, from samples with the steps as
