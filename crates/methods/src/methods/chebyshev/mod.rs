@@ -37,6 +37,7 @@ use estimator::RangeEstimator;
 use outputs_alone::OutputsAlone;
 use polynomials::expanded;
 use range_search::{Previous, RangeSearch};
+pub use segments::{number_as_motion, range_in_part};
 use sensitivity::SensitivityAnalysis;
 
 /// The least share of a tolerance that is left to the surrogate, whatever the steps take.

@@ -15,7 +15,7 @@ use super::values::Values;
 use crate::methods::{
     self, EnclosedRow, EnclosureEnd, Ensemble, EnsembleError, FollowedEnds, Observed, Proof, Sampling, Simulated, Until,
 };
-use crate::numerics::{Ledger, ParameterBox, Range, Sample};
+use crate::numerics::{CutMotions, Ledger, ParameterBox, Range, Sample};
 use crate::simulate::Schedule;
 
 /// Most numbers that are kept.
@@ -122,6 +122,14 @@ impl<'a> ReducedEnsemble<'a> {
     /// Accumulated reductions.
     pub fn plan(&self) -> &ReductionPlan {
         &self.store.plan
+    }
+
+    /// The motions of samples, cut at the events that they meet, where they are.
+    ///
+    /// # Errors
+    /// Where a sample cannot be assembled.
+    pub fn cut(&self, samples: &[Sample]) -> Result<Option<CutMotions>, EnsembleError> {
+        self.motions.segments(samples)
     }
 
     /// The channels of samples; NaN of those that do not reach the end.

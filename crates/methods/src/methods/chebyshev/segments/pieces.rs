@@ -61,10 +61,9 @@ impl<'a> Pieces<'a> {
             return Ok(Some(Self { all, known_to, added: 0 }));
         }
         let order = grid.basis().orders().iter().copied().max().map_or(0, usize::from);
-        let highest = DEGREES.get(domain.dimension() - 1).or(DEGREES.last()).map_or(0, |&most| most);
+        let degree = highest_degree(order, domain.dimension());
         let samples = Samples { xi: grid.samples().to_vec(), motions };
-        let fitting =
-            Fitting { samples, degree: order.max(LEAST_DEGREE).min(highest), points: &validation.points, direct };
+        let fitting = Fitting { samples, degree, points: &validation.points, direct };
         fitting.pieces(ensemble).map(|fitted| {
             fitted.map(|(all, samples, known_to)| Self { all, known_to, added: samples - grid.samples().len() })
         })
@@ -117,6 +116,12 @@ impl<'a> Pieces<'a> {
         let beyond = |piece: &&Piece| piece.surrogate.ends.iter().map(|end| -end.margin(xi)).fold(0.0, f64::max);
         self.all.iter().min_by(|a, b| beyond(a).total_cmp(&beyond(b)))
     }
+}
+
+/// Highest total degree in a part, given that over the whole box.
+pub(super) fn highest_degree(order: usize, k: usize) -> usize {
+    let highest = DEGREES.get(k.saturating_sub(1)).or(DEGREES.last()).map_or(0, |&most| most);
+    order.max(LEAST_DEGREE).min(highest)
 }
 
 /// The point that is nearest to the middle of all.
