@@ -23,7 +23,7 @@ const FAR: f64 = 2.0;
 const COVERING: usize = 4;
 const APART: f64 = 0.2;
 
-/// Points beside a surface are inside of it by this share of the depth: what only just grazes it cannot be cut there.
+/// Points beside a surface are inside of it by this share of the depth: a motion that only just grazes cannot be cut.
 const INSIDE: f64 = 1e-6;
 
 impl Fitting<'_> {
@@ -108,8 +108,7 @@ fn distance(a: &[f64], b: &[f64]) -> f64 {
     largest(a.iter().zip(b).map(|(a, b)| a - b))
 }
 
-/// So many points on lines from points inside of a surface to others beyond it, at margins that are given by their share
-/// of the count.
+/// So many points on lines from points inside of a surface to others beyond it; the share of all gives the margin.
 fn across(
     inside: &[&Vec<f64>],
     others: &[&Vec<f64>],
