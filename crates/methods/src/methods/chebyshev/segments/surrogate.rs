@@ -181,8 +181,8 @@ impl SegmentErrors {
         Self::between(motions, &predicted)
     }
 
-    /// Of motions that are predicted. Lines are compared at the times of the direct nodes: where an instant is late, the
-    /// motion at the same share of the segment is that of a later time.
+    /// Of motions that are predicted. Lines are compared at the times of the direct nodes: where an instant is late,
+    /// the motion at the same share of the segment is that of a later time.
     fn between(direct: &SegmentMotions, predicted: &SegmentMotions) -> Self {
         let count = direct.samples.len();
         let difference = |(own, values): (&Vec<f64>, &Vec<f64>)| largest(own.iter().zip(values).map(|(a, b)| a - b));
