@@ -52,6 +52,7 @@ mod honesty_jumps;
 mod honesty_search;
 mod humanoid;
 mod indexing;
+mod instants_in_a_part;
 mod invariants;
 mod joints_of_several_axes;
 mod kept;

@@ -46,7 +46,12 @@ fn reduced(all: &[ReducedSummary]) -> String {
             shares.map(|own| format!("{} {:.0} %", own.parameter, 100.0 * own.total)).collect();
         if let Some(occurs) = &own.occurs {
             notes.push(format!("occurs in {} of {} samples", occurs.samples, occurs.of));
-            let ends = own.worst.as_ref().map(|ends| ends.each_ref().map(|end| short(shown(end.value))));
+            let is_bounded = band(own).is_some_and(|band| !band.unresolved);
+            let ends = own
+                .worst
+                .as_ref()
+                .filter(|_| !is_bounded)
+                .map(|ends| ends.each_ref().map(|end| short(shown(end.value))));
             notes.extend(ends.map(|[least, greatest]| format!("in these {least} to {greatest}")));
         } else if band(own).is_some_and(|band| band.unresolved) {
             notes.push("unreliable".to_owned());

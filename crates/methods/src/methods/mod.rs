@@ -24,7 +24,9 @@ mod taylor;
 use tuning::TUNING;
 
 pub use certified::Certified;
-pub use chebyshev::{Chebyshev, Degree, Expand, MOST_ON_GRIDS, can_compose, ends_of_combinations};
+pub use chebyshev::{
+    Chebyshev, Degree, Expand, MOST_ON_GRIDS, can_compose, ends_of_combinations, number_as_motion, range_in_part,
+};
 pub use closure::Closure;
 pub use ensemble::{
     Combination, DenseMotions, Effort, Ensemble, EnsembleError, Interrupted, JET_WORK, Observed, OfParameters,

@@ -38,6 +38,7 @@ use estimator::RangeEstimator;
 use outputs_alone::OutputsAlone;
 use polynomials::expanded;
 use range_search::{Previous, RangeSearch};
+pub use segments::{number_as_motion, range_in_part};
 use sensitivity::SensitivityAnalysis;
 use tuning::TUNING;
 

@@ -4,6 +4,7 @@ use super::Found;
 use super::ensemble::{ReducedEnsemble, Store};
 use super::evaluated::Evaluated;
 use super::keeping::kept_reduced;
+use super::occurring::{InPart, in_part};
 use super::plan::ReductionPlan;
 use super::slopes::OfValues;
 use super::tuning::TUNING;
@@ -95,12 +96,25 @@ pub fn reduced(study: &Study, rows: &Bounded, progress: &Progress) -> Result<Fou
         Err(SimulationError::Interrupted) => Found::nothing(study.description).requirements,
         found => found?,
     };
-    // The search for a sample that fails has simulated some more.
+    let is_cut = schedule.segments().is_some();
+    // What switches within steps changes instants by their errors.
+    let in_parts = match is_cut || rows.switched_from().is_none() {
+        true => in_parts(study, &results, [&direct, &with_halved], is_cut)?,
+        false => Vec::new(),
+    };
+    // These, and the search for a sample that fails, have simulated some more.
     results.note(&direct);
     let values = Evaluated::new(study, &results, unreliable, store);
     let reduced = study.description.reduced.iter().enumerate();
     let contributions = contributions(study, &results, 1);
-    let reduced = reduced.map(|(index, own)| summary_of(study, index, own, &values, &contributions)).collect();
+    let summary = |(index, own)| {
+        let summary = summary_of(study, index, own, &values, &contributions);
+        match in_parts.get(index).copied().flatten() {
+            Some(in_part) => in_part.bounding(summary, study.request.tolerance, unreliable),
+            None => summary,
+        }
+    };
+    let reduced = reduced.map(summary).collect();
     let simulations = motions.over() + motions_halved.over() + motions_odd.over();
     let summary = (simulations > 0).then(|| MethodSummary {
         method: "reduced outputs".to_owned(),
@@ -191,6 +205,20 @@ fn bounds_of(
     }
     results.validation = Some((validation, summary));
     Ok(results)
+}
+
+/// Bounds of instants that only a part of the box has.
+fn in_parts(
+    study: &Study,
+    bounded: &Bounded,
+    values: [&ReducedEnsemble; 2],
+    is_cut: bool,
+) -> Result<Vec<Option<InPart>>, SimulationError> {
+    let is_asked = bounded.methods.iter().any(|(method, _)| *method == Method::Chebyshev);
+    let Some((validation, _)) = bounded.validation.as_ref().filter(|_| is_asked) else { return Ok(Vec::new()) };
+    let degree = study.request.degree();
+    let of = |value| in_part(value, values, is_cut, validation, degree).map_err(simulation_error);
+    (0..study.description.reduced.len()).map(of).collect()
 }
 
 /// The nominal motion's values as bands without width.

@@ -16,7 +16,7 @@ use super::values::Values;
 use crate::methods::{
     self, EnclosedRow, EnclosureEnd, Ensemble, EnsembleError, FollowedEnds, Observed, Proof, Sampling, Simulated, Until,
 };
-use crate::numerics::{Ledger, ParameterBox, Range, Sample};
+use crate::numerics::{CutMotions, Ledger, ParameterBox, Range, Sample};
 use crate::simulate::Schedule;
 
 /// A schedule: number of its steps, its longest one's bits, and how many are taken for each.
@@ -120,6 +120,14 @@ impl<'a> ReducedEnsemble<'a> {
     /// Accumulated reductions.
     pub fn plan(&self) -> &ReductionPlan {
         &self.store.plan
+    }
+
+    /// The motions of samples, cut at the events that they meet, where they are.
+    ///
+    /// # Errors
+    /// Where a sample cannot be assembled.
+    pub fn cut(&self, samples: &[Sample]) -> Result<Option<CutMotions>, EnsembleError> {
+        self.motions.segments(samples)
     }
 
     /// The channels of samples; NaN of those that do not reach the end.

@@ -16,6 +16,7 @@ mod found;
 mod keeping;
 mod kept;
 mod margins;
+mod occurring;
 mod part;
 mod plan;
 mod refine;

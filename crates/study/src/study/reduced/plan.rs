@@ -69,6 +69,13 @@ impl ReductionPlan {
         sources
     }
 
+    /// From when until when some channels accumulate, s.
+    pub fn span(&self, channels: impl Iterator<Item = usize> + Clone) -> [f64; 2] {
+        let all = channels.map(|channel| &self.channels[channel]);
+        let from = all.clone().map(|channel| channel.from).fold(f64::INFINITY, f64::min);
+        [from, all.map(|channel| channel.to).fold(f64::NEG_INFINITY, f64::max)]
+    }
+
     /// When a requirement is nearest to failing in a motion; `None` without a time.
     pub fn when(&self, number: usize, own: &Requirement, channels: &[f64]) -> Option<f64> {
         let (from, to) = own.times?;

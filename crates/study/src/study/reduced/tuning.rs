@@ -26,6 +26,13 @@ tuning! {
         /// Rounding of a sample's margin, as a share of its limit: a sample that meets the limit exactly does not pass
         /// it.
         rounding_of_margin: f64 = 1e-12, moves "verdicts of requirements";
+        /// Words of motions, and humps in which an event occurs, at most.
+        most_occurring_parts: usize = 6, moves "bounds of instants over a part of the box";
+        /// An instant is at the end of a segment, or of the time in which it is looked for, if it is so near, as a
+        /// share of the run.
+        at_event: f64 = 1e-6, moves "bounds of instants over a part of the box";
+        /// A hump grazes within rounding whose height is this share of how far heights range.
+        grazed_height: f64 = 1e-6, moves "bounds of instants over a part of the box";
         /// Rounds of the search for a sample that fails, if bounds say that there may be one.
         rounds_of_search: usize = 6, moves "verdicts of requirements";
         /// First distance of the search for a sample that fails, in ξ.

@@ -80,6 +80,15 @@ impl Values {
         matches!(self.all[value], Value::Greatest(_) | Value::Least(_) | Value::Range(..) | Value::Magnitude(..))
     }
 
+    /// The humps in which a value's event may occur, and whether it is the last of these: of instants alone.
+    pub(super) fn event(&self, value: usize) -> Option<(&Humps, bool)> {
+        match &self.all[value] {
+            Value::First(humps) => Some((humps, false)),
+            Value::Last(humps) => Some((humps, true)),
+            _ => None,
+        }
+    }
+
     /// The formula of a value that is a slack of parameters and reduced outputs, and the indices of these.
     pub fn slack(&self, value: usize) -> Option<(&NumberFormulas, &[usize])> {
         match &self.all[value] {

@@ -8,6 +8,7 @@
 //! - `piece`: a part of the box with its polynomials, `pieces`: all of them, `parts`: the samples in each;
 //! - `fitting`: polynomials by least squares, and `sampling`: the samples that these need;
 //! - `growth`: the terms of polynomials of many parameters;
+//! - `of_part`: a number that motions have in a part of the box only;
 //! - `row`: the outputs at a time, and how far the polynomials' errors move them;
 //! - `seeds`: where a range is searched for, and `climb`: the search within the part of the box that is in a segment,
 //!   and on its surfaces.
@@ -16,6 +17,7 @@ mod basis;
 mod climb;
 mod fitting;
 mod growth;
+mod of_part;
 mod parts;
 mod piece;
 mod pieces;
@@ -37,6 +39,7 @@ use crate::methods::result::{BandBuilder, Estimate, MethodResult};
 use crate::methods::validation::Validation;
 use crate::numerics::{Extent, Range, SAFETY_OF_SURROGATE, Sample, Surrogate, largest, union};
 use growth::Growth;
+pub use of_part::{number_as_motion, range_in_part};
 use piece::Piece;
 use pieces::Pieces;
 use row::{BoxRow, SensedRow};

@@ -54,18 +54,9 @@ impl<'a> Pieces<'a> {
             return Ok(Some(Self { all, known_to, added: 0 }));
         }
         let order = grid.basis().orders().iter().copied().max().map_or(0, usize::from);
-        let highest = TUNING
-            .degrees_of_part
-            .get(domain.dimension() - 1)
-            .or(TUNING.degrees_of_part.last())
-            .map_or(0, |&most| most);
+        let degree = highest_degree(order, domain.dimension());
         let samples = Samples { xi: grid.samples().to_vec(), motions };
-        let fitting = Fitting {
-            samples,
-            degree: order.max(TUNING.least_degree).min(highest),
-            points: &validation.points,
-            direct,
-        };
+        let fitting = Fitting { samples, degree, points: &validation.points, direct };
         fitting.pieces(ensemble).map(|fitted| {
             fitted.map(|(all, samples, known_to)| Self { all, known_to, added: samples - grid.samples().len() })
         })
@@ -88,7 +79,7 @@ impl<'a> Pieces<'a> {
         let mut samples = Samples { xi: validation.points.clone(), motions: direct };
         let is_one = samples.motions.words.iter().filter(|word| !word.samples.is_empty()).count() == 1;
         if !is_one {
-            let others = [corners(k, TUNING.corners), spread(k, TUNING.jet_samples * k)].concat();
+            let others = [corners(k, TUNING.corners), spread(k, TUNING.samples_of_parts * k)].concat();
             let Some(motions) = ensemble.segments(&domain.samples(&others))? else { return Ok(None) };
             samples.motions.append(motions, samples.xi.len());
             samples.xi.extend(others);
@@ -118,6 +109,13 @@ impl<'a> Pieces<'a> {
         let beyond = |piece: &&Piece| piece.surrogate.ends.iter().map(|end| -end.margin(xi)).fold(0.0, f64::max);
         self.all.iter().min_by(|a, b| beyond(a).total_cmp(&beyond(b)))
     }
+}
+
+/// Highest total degree in a part, given that over the whole box.
+pub(super) fn highest_degree(order: usize, k: usize) -> usize {
+    let highest =
+        TUNING.degrees_of_part.get(k.saturating_sub(1)).or(TUNING.degrees_of_part.last()).map_or(0, |&most| most);
+    order.max(TUNING.least_degree).min(highest)
 }
 
 /// The point that is nearest to the middle of all.

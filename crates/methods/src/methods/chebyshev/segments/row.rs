@@ -64,9 +64,8 @@ impl SegmentRow<'_> {
         self.closure.outputs(self.time, count, parameters, motion)
     }
 
-    /// How far the polynomials' errors move the ends of ranges: an end is where a point is, and there the motion may be
-    /// what it is a little earlier or later, behind the event too, each line may be off by its own error, and a surface
-    /// beside it by its.
+    /// How far the polynomials' errors move the ends of ranges: an end is where a point is, and there an event that is
+    /// near may have been already, or not yet, each line may be off by its own error, and a surface beside it by its.
     pub fn moved(&self, extents: &[Extent]) -> Vec<f64> {
         let Piece { surrogate, errors, .. } = self.piece;
         let xi = extents.iter().flat_map(|extent| extent.places.iter().cloned()).collect();
@@ -77,7 +76,7 @@ impl SegmentRow<'_> {
                 let segment = point.segment(self.time);
                 self.time + shift * errors.times[segment].max(errors.times[segment + 1])
             };
-            points.iter().map(|point| (point, point.segment(shifted(point)), shifted(point))).collect::<Vec<_>>()
+            points.iter().map(|point| (point, point.segment(shifted(point)), self.time)).collect::<Vec<_>>()
         };
         let here = self.outputs_on(&at(0.0));
         let mut moved: Vec<Vec<f64>> = vec![vec![0.0; count]; extents.len()];

@@ -24,7 +24,8 @@ impl Fitting<'_> {
         let outside: Vec<&Vec<f64>> = of_box.iter().filter(|xi| margin(xi) < 0.0).chain(others).collect();
         let from: Vec<&Vec<f64>> =
             if inside.is_empty() { piece.samples.iter().collect() } else { inside.iter().collect() };
-        let ends = across(&from, &outside, TUNING.candidates / 4, margin, 0.0);
+        let inside_of = TUNING.inside_surface * from.iter().map(|xi| margin(xi)).fold(0.0, f64::max);
+        let ends = across(&from, &outside, TUNING.candidates / 4, margin, |_| inside_of);
         let mut all: Vec<Vec<f64>> = inside.iter().cloned().chain(ends).filter(|xi| margin(xi) >= 0.0).collect();
         let mut found = Vec::new();
         while found.len() < TUNING.covering {
@@ -74,7 +75,7 @@ impl Fitting<'_> {
                 let limits = ends.iter().filter(|other| other.offset < 0.0).map(|other| -other.offset);
                 let depth = limits.fold(deepest, f64::min);
                 let others: Vec<&Vec<f64>> = xi.iter().filter(|point| margin(point) < 0.0).collect();
-                across(&of_word, &others, beside, margin, depth)
+                across(&of_word, &others, beside, margin, |share| depth * share * share)
             });
             let mut own: Vec<Vec<f64>> = on_lines.filter(fits).take(beside).collect();
             let others = of_box.iter().filter(|point| fits(point)).cloned();
@@ -92,20 +93,20 @@ fn distance(a: &[f64], b: &[f64]) -> f64 {
     largest(a.iter().zip(b).map(|(a, b)| a - b))
 }
 
-/// So many points on lines from points inside of a surface to others beyond it, evenly in the root of the margin.
+/// So many points on lines from points inside of a surface to others beyond it; the share of all gives the margin.
 fn across(
     inside: &[&Vec<f64>],
     others: &[&Vec<f64>],
     count: usize,
     margin: impl Fn(&Vec<f64>) -> f64,
-    depth: f64,
+    wanted: impl Fn(f64) -> f64,
 ) -> Vec<Vec<f64>> {
     if inside.is_empty() || others.is_empty() {
         return Vec::new();
     }
     let of = |index: usize| {
         let (from, to) = (inside[index % inside.len()], others[index % others.len()]);
-        let wanted = depth * ((index as f64 + 0.5) / count as f64).powi(2);
+        let wanted = wanted((index as f64 + 0.5) / count as f64);
         let at = |share: f64| from.iter().zip(to).map(|(a, b)| a + share * (b - a)).collect::<Vec<f64>>();
         let (mut low, mut high) = (0.0, 1.0);
         for _ in 0..TUNING.halvings_of_line {

@@ -2,7 +2,7 @@
 
 use super::basis::{Basis, End};
 use super::tuning::TUNING;
-use crate::numerics::{LeastSquares, STEP_NODES, SegmentMotions, largest, step_weights};
+use crate::numerics::{LeastSquares, STEP_NODES, SegmentMotions, largest, step_nodes, step_weights};
 
 /// Motions of one word, as functions of the parameters in a part of the box.
 pub(super) struct SegmentSurrogate<'a> {
@@ -37,8 +37,20 @@ pub(super) struct Point {
 pub(super) struct SegmentErrors {
     /// Of the instants, s.
     pub times: Vec<f64>,
-    /// Of each line, by segment.
+    /// Of each line at a time, by segment.
     pub lines: Vec<Vec<f64>>,
+}
+
+/// A share on the branch of a segment.
+fn beside(share: f64) -> f64 {
+    if share.is_nan() { 0.0 } else { share.clamp(-TUNING.beyond_branch, 1.0 + TUNING.beyond_branch) }
+}
+
+/// The share of a segment at which a node of its steps is.
+fn share_of_node(steps: &[f64], node: usize) -> f64 {
+    let step = (node / (STEP_NODES - 1)).min(steps.len() - 1);
+    let begin = if step == 0 { 0.0 } else { steps[step - 1] };
+    begin + (steps[step] - begin) * step_nodes()[node - step * (STEP_NODES - 1)]
 }
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {
@@ -99,8 +111,7 @@ impl<'a> SegmentSurrogate<'a> {
     /// shortest segments are no longer than their errors.
     pub fn motion(&self, point: &Point, segment: usize, time: f64) -> impl Iterator<Item = f64> {
         let [begin, end] = [point.times[segment], point.times[segment + 1]];
-        let share = ((time - begin) / (end - begin)).clamp(-TUNING.beyond_branch, 1.0 + TUNING.beyond_branch);
-        let (step, weights) = step_weights(&self.steps[segment], if share.is_nan() { 0.0 } else { share });
+        let (step, weights) = step_weights(&self.steps[segment], beside((time - begin) / (end - begin)));
         let nodes = &self.nodes[segment][step * (STEP_NODES - 1)..][..STEP_NODES];
         let terms = point.terms.clone();
         (0..self.lines).map(move |line| {
@@ -133,37 +144,69 @@ impl SegmentErrors {
     /// At samples that were cut at the same events.
     pub fn new(surrogate: &SegmentSurrogate, xi: &[Vec<f64>], direct: &SegmentMotions) -> Self {
         let points = surrogate.points(xi.to_vec());
-        let differences = |coefficients: &[f64], values: &[f64]| {
-            let own = points.iter().zip(values).map(|(point, value)| dot(coefficients, &point.terms) - value);
-            largest(own.chain([surrogate.basis.truncation(coefficients)]))
-        };
-        let times = surrogate.times.iter().zip(&direct.times).map(|(own, values)| differences(own, values)).collect();
         let terms = surrogate.basis.len();
-        let of_line = |(own, values): (&Vec<Vec<f64>>, &Vec<Vec<f64>>), line: usize| {
-            largest(own.iter().zip(values).map(|(own, values)| {
-                differences(&own[line * terms..][..terms], &values[line * points.len()..][..points.len()])
-            }))
+        let values = |coefficients: &Vec<f64>| -> Vec<f64> {
+            let line = |line| points.iter().map(move |point| dot(line, &point.terms));
+            coefficients.chunks_exact(terms).flat_map(line).collect()
+        };
+        let predicted = SegmentMotions {
+            samples: direct.samples.clone(),
+            steps: direct.steps.clone(),
+            times: surrogate.times.iter().map(values).collect(),
+            nodes: surrogate.nodes.iter().map(|nodes| nodes.iter().map(values).collect()).collect(),
+        };
+        let truncation = |coefficients: &[f64]| surrogate.basis.truncation(coefficients);
+        let of_line = |nodes: &Vec<Vec<f64>>, line: usize| {
+            largest(nodes.iter().map(|node| truncation(&node[line * terms..][..terms])))
         };
         let of_segment = |nodes| (0..surrogate.lines).map(|line| of_line(nodes, line)).collect();
-        let lines = surrogate.nodes.iter().zip(&direct.nodes).map(of_segment).collect();
-        Self { times, lines }
+        let times = surrogate.times.iter().map(|time| truncation(time)).collect();
+        let lines = surrogate.nodes.iter().map(of_segment).collect();
+        Self::between(direct, &predicted).or(&Self { times, lines })
     }
 
-    /// From the differences of values at the motions' samples, line by line.
+    /// From the differences of values at the motions' samples from what the others predict there, line by line.
     pub fn of_samples(motions: &SegmentMotions, mut differences: impl FnMut(&[f64]) -> Vec<f64>) -> Self {
-        let count = motions.samples.len();
-        let times = motions.times.iter().map(|times| largest(differences(times))).collect();
-        let mut of_segment = |nodes: &Vec<Vec<f64>>| {
-            let mut lines: Vec<f64> = Vec::new();
-            for node in nodes {
-                let own: Vec<f64> =
-                    differences(node).chunks_exact(count).map(|line| largest(line.iter().copied())).collect();
-                lines.resize(own.len(), 0.0);
-                lines.iter_mut().zip(own).for_each(|(line, own)| *line = largest([*line, own]));
-            }
-            lines
+        let mut values = |own: &Vec<f64>| -> Vec<f64> {
+            own.iter().zip(differences(own)).map(|(own, difference)| own - difference).collect()
         };
-        Self { times, lines: motions.nodes.iter().map(&mut of_segment).collect() }
+        let predicted = SegmentMotions {
+            samples: motions.samples.clone(),
+            steps: motions.steps.clone(),
+            times: motions.times.iter().map(&mut values).collect(),
+            nodes: motions.nodes.iter().map(|nodes| nodes.iter().map(&mut values).collect()).collect(),
+        };
+        Self::between(motions, &predicted)
+    }
+
+    /// Of motions that are predicted. Lines are compared at the times of the direct nodes: where an instant is late,
+    /// the motion at the same share of the segment is that of a later time.
+    fn between(direct: &SegmentMotions, predicted: &SegmentMotions) -> Self {
+        let count = direct.samples.len();
+        let difference = |(own, values): (&Vec<f64>, &Vec<f64>)| largest(own.iter().zip(values).map(|(a, b)| a - b));
+        let times = predicted.times.iter().zip(&direct.times).map(difference).collect();
+        let of_segment = |segment: usize| {
+            let steps = &direct.steps[segment];
+            let lines = direct.nodes[segment].first().map_or(0, |node| node.len() / count.max(1));
+            let mut errors = vec![0.0; lines];
+            for (node, values) in direct.nodes[segment].iter().enumerate() {
+                let share = share_of_node(steps, node);
+                for sample in 0..count {
+                    let [begin, end] = [segment, segment + 1].map(|number| direct.times[number][sample]);
+                    let time = begin + share * (end - begin);
+                    let [begin, end] = [segment, segment + 1].map(|number| predicted.times[number][sample]);
+                    let (step, weights) = step_weights(steps, beside((time - begin) / (end - begin)));
+                    let nodes = &predicted.nodes[segment][step * (STEP_NODES - 1)..][..STEP_NODES];
+                    for (line, error) in errors.iter_mut().enumerate() {
+                        let at = line * count + sample;
+                        let value: f64 = weights.iter().zip(nodes).map(|(weight, node)| weight * node[at]).sum();
+                        *error = largest([*error, value - values[at]]);
+                    }
+                }
+            }
+            errors
+        };
+        Self { times, lines: (0..direct.nodes.len()).map(of_segment).collect() }
     }
 
     /// The larger of both.

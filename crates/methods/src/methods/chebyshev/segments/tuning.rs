@@ -71,8 +71,8 @@ tuning! {
         least_degree: usize = 3, moves "Chebyshev bounds through events";
         /// Highest total degree in a part, by the number of parameters; of more it is the last.
         degrees_of_part: [usize; 4] = [8, 5, 3, 2], moves "Chebyshev bounds through events";
-        /// Samples for each parameter that show the parts of jets.
-        jet_samples: usize = 24, moves "Chebyshev bounds through events";
+        /// Samples for each parameter that show the parts of jets and of instants.
+        samples_of_parts: usize = 24, moves "Chebyshev bounds through events";
         /// Difference by which slopes of surfaces are taken.
         step_of_surfaces: f64 = 1e-6, moves "errors of Chebyshev bounds through events";
         /// An end beside a surface is moved with it where it is nearer than so many times the surface's error.
@@ -81,6 +81,9 @@ tuning! {
         candidates: usize = 512, moves "Chebyshev bounds through events";
         /// Corners of the box among the candidates for samples.
         corners: usize = 16, moves "Chebyshev bounds through events";
+        /// Points beside a surface are inside of it by this share of the depth: a motion that only just grazes cannot
+        /// be cut.
+        inside_surface: f64 = 1e-6, moves "Chebyshev bounds through events";
         /// Halvings of a line on which a level is looked for.
         halvings_of_line: usize = 40, moves "Chebyshev bounds through events";
         /// Of the samples that a part lacks on the side of a surface without the event, one in so many is beside it.

@@ -1,0 +1,94 @@
+//! Bounds of a number that motions have in a part of the box only, such as the instant of an event that does not
+//! always occur.
+
+use super::fitting::Fitting;
+use super::parts::Samples;
+use super::piece::Piece;
+use super::pieces::highest_degree;
+use super::row::SegmentRow;
+use super::seeds::Lattice;
+use super::tuning::TUNING;
+use super::{climb, joined};
+use crate::methods::closure::Closure;
+use crate::methods::ensemble::{Ensemble, EnsembleError};
+use crate::methods::validation::Validation;
+use crate::numerics::{CutMotions, Extent, Range, STEP_NODES, SegmentMotions, corners, spread};
+
+/// The motions of a word that stand for a number of each of its samples; without numbers, of a word that has none.
+pub fn number_as_motion(samples: Vec<usize>, numbers: Option<&[f64]>) -> SegmentMotions {
+    let Some(numbers) = numbers else { return SegmentMotions { samples, ..SegmentMotions::default() } };
+    let count = samples.len();
+    let node = [numbers, &vec![0.0; count]].concat();
+    SegmentMotions {
+        samples,
+        steps: vec![vec![1.0]],
+        times: vec![vec![0.0; count], vec![1.0; count]],
+        nodes: vec![vec![node; STEP_NODES]],
+    }
+}
+
+/// The number itself.
+struct Number;
+
+impl Closure for Number {
+    fn independent(&self) -> &[usize] {
+        &[0]
+    }
+
+    fn needs_velocities(&self) -> bool {
+        false
+    }
+
+    fn outputs(&self, _: f64, count: usize, _: Vec<f64>, mut motion: Vec<f64>) -> Vec<f64> {
+        motion.truncate(count);
+        motion
+    }
+}
+
+/// The range of a number over the parts of the box that have one, and how far its ends may be off. The ensemble's
+/// segments are those of [`number_as_motion`], and it has no other output. `None` where a sample has none of the words
+/// that `known_to` speaks of.
+///
+/// # Errors
+/// Where a sample cannot be assembled.
+pub fn range_in_part(
+    ensemble: &dyn Ensemble,
+    degree: usize,
+    validation: &Validation,
+) -> Result<Option<(Range, f64)>, EnsembleError> {
+    let domain = ensemble.domain();
+    let k = domain.dimension();
+    let xi = [corners(k, TUNING.corners), spread(k, TUNING.samples_of_parts * k)].concat();
+    let cut = |xi: &[Vec<f64>]| ensemble.segments(&domain.samples(xi));
+    let (Some(motions), Some(direct)) = (cut(&xi)?, cut(&validation.points)?) else { return Ok(None) };
+    let points = &validation.points;
+    let held_out = numbers_of(&direct);
+    let fitting = Fitting { samples: Samples { xi, motions }, degree: highest_degree(degree, k), points, direct };
+    let Some((pieces, _, known_to)) = fitting.pieces(ensemble)? else { return Ok(None) };
+    // Motions that stand for the number are read at the middle of their time.
+    let middle = 0.5;
+    if known_to < middle {
+        return Ok(None);
+    }
+    let of_piece = |piece: &Piece| {
+        let lattice = Lattice::new(&piece.surrogate, &piece.samples, k);
+        let row = SegmentRow { ensemble, piece, closure: &Number, time: middle };
+        let extents = climb::extents(&row, &lattice);
+        let moved = row.moved(&extents);
+        (extents, moved)
+    };
+    let parts: Vec<(Vec<Extent>, Vec<f64>)> =
+        pieces.iter().filter(|piece| piece.surrogate.segments() > 0).map(of_piece).collect();
+    let (extent, moved) = joined(&parts, 0);
+    let error = held_out.map(|number| extent.range.distance(number)).fold(moved, f64::max);
+    Ok(Some((extent.range, error)))
+}
+
+/// All numbers that motions stand for.
+fn numbers_of(motions: &CutMotions) -> impl Iterator<Item = f64> + use<> {
+    let of_word = |word: &SegmentMotions| -> Vec<f64> {
+        let node = word.nodes.first().and_then(|nodes| nodes.first());
+        node.map(|node| node[..word.samples.len()].to_vec()).unwrap_or_default()
+    };
+    motions.words.iter().flat_map(of_word).collect::<Vec<f64>>().into_iter()
+}
