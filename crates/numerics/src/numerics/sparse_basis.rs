@@ -168,6 +168,17 @@ impl SparseBasis {
         &self.fibres[axis]
     }
 
+    /// Values of all terms at many points, point by point.
+    pub fn terms<P: AsRef<[f64]>>(&self, points: &[P]) -> Vec<Vec<f64>> {
+        let mut work = SparseWork::default();
+        let mut all = Vec::with_capacity(points.len());
+        for points in points.chunks(LANES) {
+            self.products(points, &mut work);
+            all.extend((0..points.len()).map(|lane| work.terms.iter().map(|term| term[lane]).collect::<Vec<f64>>()));
+        }
+        all
+    }
+
     /// Value at ξ ∈ [−1, 1]^k of the polynomial with these coefficients.
     #[cfg(test)]
     pub fn evaluate(&self, coefficients: &[f64], xi: &[f64]) -> f64 {
@@ -240,15 +251,7 @@ impl<P: AsRef<[f64]>> Vectorise for Evaluation<'_, P> {
     fn run(self) {
         let Self { basis, points, coefficients, out, work } = self;
         for (tile, points) in points.chunks(LANES).enumerate() {
-            basis.polynomials(points, &mut work.polynomials);
-            work.terms.clear();
-            work.terms.push([1.0; LANES]);
-            for factor in &basis.factors {
-                let (earlier, polynomial) =
-                    (&work.terms[factor.earlier as usize], &work.polynomials[factor.polynomial as usize]);
-                let term = std::array::from_fn(|lane| earlier[lane] * polynomial[lane]);
-                work.terms.push(term);
-            }
+            basis.products(points, work);
             let lines = coefficients.chunks_exact(basis.len()).zip(out.chunks_exact_mut(self.points.len()));
             for (coefficients, out) in lines {
                 let mut sum = [0.0; LANES];
@@ -262,6 +265,20 @@ impl<P: AsRef<[f64]>> Vectorise for Evaluation<'_, P> {
 }
 
 impl SparseBasis {
+    /// The terms at up to `LANES` points.
+    #[inline(always)]
+    fn products<P: AsRef<[f64]>>(&self, points: &[P], work: &mut SparseWork) {
+        self.polynomials(points, &mut work.polynomials);
+        work.terms.clear();
+        work.terms.push([1.0; LANES]);
+        for factor in &self.factors {
+            let (earlier, polynomial) =
+                (&work.terms[factor.earlier as usize], &work.polynomials[factor.polynomial as usize]);
+            let term = std::array::from_fn(|lane| earlier[lane] * polynomial[lane]);
+            work.terms.push(term);
+        }
+    }
+
     /// C_j(ξᵢ), j = 0…nᵢ, axis after axis; lanes without a point stay at ξ = 0.
     #[inline(always)]
     fn polynomials<P: AsRef<[f64]>>(&self, points: &[P], out: &mut Vec<Lanes>) {
@@ -305,6 +322,9 @@ mod tests {
             for (line, values) in c.chunks_exact(24).zip(values.chunks_exact(points.len())) {
                 for (xi, value) in points.iter().zip(values) {
                     prop_assert!((value - tensor.evaluate(line, xi)).abs() < 1e-14);
+                }
+                for (terms, value) in sparse.terms(&points).iter().zip(values) {
+                    prop_assert_eq!(line.iter().zip(terms).map(|(c, term)| c * term).sum::<f64>(), *value);
                 }
             }
         }

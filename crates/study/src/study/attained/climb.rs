@@ -193,8 +193,8 @@ mod tests {
         assert!(best.value > most - 5e-3, "{} of {most} after {steps} steps: {best:?}", best.value);
     }
 
-    /// The same along a bent ridge: b · x − 20 g(x)². Where g vanishes, b · x is largest in the corner x₀ = x₁ = 1, from
-    /// which x₂ = −0.6 follows.
+    /// The same along a bent ridge: b · x − 20 g(x)². Where g vanishes, b · x is largest in the corner x₀ = x₁ = 1;
+    /// x₂ = −0.6 follows.
     #[test]
     fn a_bent_ridge_is_followed_to_its_end() {
         let g = |x: &[f64]| 0.3 * x[0] + 0.2 * x[1] + x[2] + 0.2 * x[0] * x[0] - 0.1;

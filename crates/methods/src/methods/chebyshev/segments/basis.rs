@@ -3,7 +3,7 @@
 use symdiff::jet::Monomials;
 
 use super::tuning::TUNING;
-use crate::numerics::{LeastSquares, SparseBasis, SparseWork, largest, truncation};
+use crate::numerics::{LeastSquares, SparseBasis, largest, truncation};
 
 /// Terms in ξ.
 #[derive(Clone, Debug)]
@@ -155,25 +155,18 @@ impl Basis<'_> {
 
     /// Values of all terms, point by point.
     pub fn values(&self, xi: &[Vec<f64>]) -> Vec<Vec<f64>> {
-        let basis = match self {
-            Self::Grid(basis) => basis,
-            Self::Fitted(fitted) => return values_of(xi.iter().map(Vec::as_slice), |xi, into| fitted.values(xi, into)),
+        let points = xi.iter().map(Vec::as_slice);
+        match self {
+            Self::Grid(basis) => basis.terms(xi),
+            Self::Fitted(fitted) => values_of(points, |xi, into| fitted.values(xi, into)),
             Self::Taylor { monomials, centre } => {
                 let power = |(xi, (centre, &exponent)): (&f64, (&f64, &usize))| (xi - centre).powi(exponent as i32);
                 let term = |xi: &[f64], term: usize| -> f64 {
                     xi.iter().zip(centre.iter().zip(monomials.exponents(term))).map(power).product()
                 };
-                return values_of(xi.iter().map(Vec::as_slice), |xi, into| {
-                    into.extend((0..monomials.len()).map(|number| term(xi, number)));
-                });
+                values_of(points, |xi, into| into.extend((0..monomials.len()).map(|number| term(xi, number))))
             }
-        };
-        let (terms, count) = (basis.len(), xi.len());
-        let mut unit = vec![0.0; terms * terms];
-        (0..terms).for_each(|term| unit[term * terms + term] = 1.0);
-        let mut values = vec![0.0; terms * count];
-        basis.values(xi, &unit, &mut values, &mut SparseWork::default());
-        (0..count).map(|point| values.iter().skip(point).step_by(count).copied().collect()).collect()
+        }
     }
 
     /// Size of the terms that coefficients lack; of those that are fitted or a jet's, other samples tell.
