@@ -63,6 +63,31 @@ impl CutMotions {
 }
 
 impl SegmentMotions {
+    /// Those of some of the samples, by their places.
+    #[must_use]
+    pub fn picked(&self, places: &[usize]) -> Self {
+        let count = self.samples.len();
+        let pick = |line: &[f64]| places.iter().map(|&index| line[index]).collect::<Vec<f64>>();
+        let of_node = |node: &Vec<f64>| node.chunks_exact(count.max(1)).flat_map(pick).collect();
+        Self {
+            samples: places.iter().map(|&index| self.samples[index]).collect(),
+            steps: self.steps.clone(),
+            times: self.times.iter().map(|times| pick(times)).collect(),
+            nodes: self.nodes.iter().map(|nodes| nodes.iter().map(of_node).collect()).collect(),
+        }
+    }
+
+    /// With other times, and other values at nodes.
+    #[must_use]
+    pub fn mapped(&self, values: impl Fn(&Vec<f64>) -> Vec<f64>) -> Self {
+        Self {
+            samples: self.samples.clone(),
+            steps: self.steps.clone(),
+            times: self.times.iter().map(&values).collect(),
+            nodes: self.nodes.iter().map(|nodes| nodes.iter().map(&values).collect()).collect(),
+        }
+    }
+
     fn append(&mut self, other: Self, offset: usize) {
         if other.samples.is_empty() {
             return;

@@ -90,7 +90,8 @@ impl<'s> SingularWatch<'s> {
         let (mut left, mut right) = (weakness(inner(from, to)), weakness(inner(to, from)));
         let mut steepest = slope(from, left).max(slope(left, right)).max(slope(right, to));
         for _ in 0..TUNING.golden_sections {
-            if left.1.min(right.1) > TUNING.steepest_fall * steepest * (to.0 - from.0) {
+            let may_fall = TUNING.steepest_fall * steepest * (to.0 - from.0);
+            if left.1.min(right.1) > TUNING.vanishing_independence + may_fall {
                 return None;
             }
             if left.1 < right.1 {

@@ -6,11 +6,11 @@
 
 use super::basis::{Basis, Fitted, Level};
 use super::parts::{Samples, WordPart};
-use super::piece::Piece;
-use super::surrogate::{SegmentErrors, SegmentSurrogate};
+use super::piece::{Compared, HeldOut, Piece};
+use super::surrogate::SegmentSurrogate;
 use super::tuning::TUNING;
 use crate::methods::ensemble::{Ensemble, EnsembleError};
-use crate::numerics::{CutMotions, LeastSquares, SegmentMotions, largest};
+use crate::numerics::{CutMotions, LeastSquares, largest};
 
 /// Samples, and what their polynomials are held against.
 pub(super) struct Fitting<'v> {
@@ -82,7 +82,7 @@ impl Fitting<'_> {
     /// The polynomials of a part, and by what share of their range they miss samples that are left out.
     fn fitted<'b>(&self, part: &WordPart, levels: &[Option<Level>]) -> Option<(f64, Piece<'b>)> {
         let places = self.samples.places(part, levels);
-        let motions = picked(&self.samples.motions.words[part.word], &places);
+        let motions = self.samples.motions.words[part.word].picked(&places);
         let xi: Vec<Vec<f64>> = motions.samples.iter().map(|&sample| self.samples.xi[sample].clone()).collect();
         let (k, count) = (xi.first()?.len(), xi.len());
         let depths = part.depths(levels);
@@ -110,30 +110,13 @@ impl Fitting<'_> {
         let ends = part.ends(levels);
         let coefficients = |values: &[f64]| fits(values).into_iter().flat_map(|(own, _)| own).collect();
         let surrogate = SegmentSurrogate::new(basis, ends, &motions, coefficients).fitted_by(squares.clone());
-        let left_out = |values: &[f64]| fits(values).into_iter().flat_map(|(_, left_out)| left_out).collect();
-        let errors = SegmentErrors::of_samples(&motions, left_out);
-        let points = self.points;
-        let held_out = &self.direct.words[part.word];
-        let is_inside = |index: &usize| {
-            surrogate.ends.iter().all(|end| end.offset == 0.0 || end.margin(&points[held_out.samples[*index]]) >= 0.0)
+        let without = |values: &Vec<f64>| -> Vec<f64> {
+            let left_out = fits(values).into_iter().flat_map(|(_, left_out)| left_out);
+            values.iter().zip(left_out).map(|(own, left_out)| own - left_out).collect()
         };
-        let held_out = picked(held_out, &(0..held_out.samples.len()).filter(is_inside).collect::<Vec<_>>());
-        let at: Vec<Vec<f64>> = held_out.samples.iter().map(|&sample| points[sample].clone()).collect();
-        let errors = if at.is_empty() { errors } else { errors.or(&SegmentErrors::new(&surrogate, &at, &held_out)) };
-        Some((misses, Piece { surrogate, errors, samples: xi }))
-    }
-}
-
-/// Motions of some of the samples.
-fn picked(motions: &SegmentMotions, places: &[usize]) -> SegmentMotions {
-    let count = motions.samples.len();
-    let pick = |line: &[f64]| places.iter().map(|&index| line[index]).collect::<Vec<f64>>();
-    let of_node = |node: &Vec<f64>| node.chunks_exact(count.max(1)).flat_map(pick).collect();
-    SegmentMotions {
-        samples: places.iter().map(|&index| motions.samples[index]).collect(),
-        steps: motions.steps.clone(),
-        times: motions.times.iter().map(|times| pick(times)).collect(),
-        nodes: motions.nodes.iter().map(|nodes| nodes.iter().map(of_node).collect()).collect(),
+        let compared = Compared { motions: &motions, predicted: &motions.mapped(without) };
+        let held_out = HeldOut { points: self.points, motions: &self.direct.words[part.word] };
+        Some((misses, Piece::fitted(surrogate, xi, compared, held_out)))
     }
 }
 
@@ -148,7 +131,9 @@ mod tests {
     use crate::methods::closure::Closure;
     use crate::methods::ensemble::{Sampling, Simulated};
     use crate::methods::proof::{EnclosedRow, EnclosureEnd, Proof};
-    use crate::numerics::{BoundaryMargins, ParameterBox, STEP_NODES, Sample, Surrogate, largest, spread, step_nodes};
+    use crate::numerics::{
+        BoundaryMargins, ParameterBox, STEP_NODES, Sample, SegmentMotions, Surrogate, largest, spread, step_nodes,
+    };
 
     /// Balls thrown up at speeds from 4.5 to 5.5 m/s, under a ceiling at a height of 1.3 m on a spring of ω².
     struct Throws {

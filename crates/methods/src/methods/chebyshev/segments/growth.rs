@@ -67,7 +67,8 @@ impl Growth {
     pub fn error(&self, errors: &SegmentErrors) -> f64 {
         let Some(scales) = self.motions.words.first().map(Scales::of) else { return f64::NAN };
         let times = errors.times.iter().map(|error| error / scales.shortest);
-        let lines = errors.lines.iter().flat_map(|lines| lines.iter().zip(&scales.spans).map(|(own, span)| own / span));
+        let steps = errors.lines.iter().flatten();
+        let lines = steps.flat_map(|lines| lines.iter().zip(&scales.spans).map(|(own, span)| own / span));
         largest(times.chain(lines))
     }
 

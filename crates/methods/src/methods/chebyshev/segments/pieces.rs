@@ -47,7 +47,7 @@ impl<'a> Pieces<'a> {
                 let coefficients = |values: &[f64]| grid.coefficients(values, &mut work);
                 let surrogate = SegmentSurrogate::new(Basis::Grid(grid.basis()), Vec::new(), motions, coefficients);
                 let errors = SegmentErrors::new(&surrogate, &validation.points, direct);
-                Piece { surrogate, errors, samples: Vec::new() }
+                Piece::new(surrogate, errors, Vec::new())
             };
             let all = motions.words.iter().zip(&direct.words).map(of_word).collect();
             let known_to = motions.known_to.min(direct.known_to);
@@ -97,8 +97,9 @@ impl<'a> Pieces<'a> {
             let basis = Basis::Taylor { monomials: space.monomials().clone(), centre };
             let ends = WordPart::of_word(word, &samples.motions).ends(&levels);
             let surrogate = SegmentSurrogate::new(basis, ends, &jet, <[f64]>::to_vec);
-            let errors = SegmentErrors::new(&surrogate, &xi, motions);
-            all.push(Piece { surrogate, errors, samples: xi });
+            // Ends are farther from the centre of a jet than samples are: what one of them shows is said of all steps.
+            let errors = SegmentErrors::new(&surrogate, &xi, motions).of_segments();
+            all.push(Piece::new(surrogate, errors, xi));
         }
         let added = samples.xi.len() - validation.points.len() + all.len() - 1;
         Ok(Some(Self { all, known_to: samples.motions.known_to, added }))

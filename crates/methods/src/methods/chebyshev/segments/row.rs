@@ -67,14 +67,15 @@ impl SegmentRow<'_> {
     /// How far the polynomials' errors move the ends of ranges: an end is where a point is, and there an event that is
     /// near may have been already, or not yet, each line may be off by its own error, and a surface beside it by its.
     pub fn moved(&self, extents: &[Extent]) -> Vec<f64> {
-        let Piece { surrogate, errors, .. } = self.piece;
+        let surrogate = &self.piece.surrogate;
         let xi = extents.iter().flat_map(|extent| extent.places.iter().cloned()).collect();
         let points = surrogate.points(xi);
         let (count, n) = (points.len(), surrogate.lines() / 2);
         let at = |shift: f64| {
             let shifted = |point: &Point| {
                 let segment = point.segment(self.time);
-                self.time + shift * errors.times[segment].max(errors.times[segment + 1])
+                let times = &self.piece.errors_at(point).times;
+                self.time + shift * times[segment].max(times[segment + 1])
             };
             points.iter().map(|point| (point, point.segment(shifted(point)), self.time)).collect::<Vec<_>>()
         };
@@ -94,8 +95,10 @@ impl SegmentRow<'_> {
                 let mut motion = vec![0.0; 2 * n * count];
                 for (index, point) in points.iter().enumerate() {
                     let segment = point.segment(self.time);
+                    let step = surrogate.step(point, segment, self.time);
+                    let error = self.piece.errors_at(point).of_line(segment, step, line);
                     for (number, value) in surrogate.motion(point, segment, self.time).enumerate() {
-                        let by = if number == line { sign * errors.lines[segment][line] } else { 0.0 };
+                        let by = if number == line { sign * error } else { 0.0 };
                         motion[number * count + index] = value + by;
                     }
                 }

@@ -37,8 +37,8 @@ pub(super) struct Point {
 pub(super) struct SegmentErrors {
     /// Of the instants, s.
     pub times: Vec<f64>,
-    /// Of each line at a time, by segment.
-    pub lines: Vec<Vec<f64>>,
+    /// Of each line at a time, by segment and step.
+    pub lines: Vec<Vec<Vec<f64>>>,
 }
 
 /// A share on the branch of a segment.
@@ -91,6 +91,11 @@ impl<'a> SegmentSurrogate<'a> {
         self.lines
     }
 
+    /// Number of terms.
+    pub fn terms(&self) -> usize {
+        self.basis.len()
+    }
+
     /// Number of segments.
     pub fn segments(&self) -> usize {
         self.steps.len()
@@ -118,6 +123,12 @@ impl<'a> SegmentSurrogate<'a> {
             let value = |node: &Vec<f64>| dot(&node[line * terms.len()..][..terms.len()], &terms);
             weights.iter().zip(nodes).map(|(weight, node)| weight * value(node)).sum()
         })
+    }
+
+    /// The step of a segment in which a point is at a time.
+    pub fn step(&self, point: &Point, segment: usize, time: f64) -> usize {
+        let [begin, end] = [point.times[segment], point.times[segment + 1]];
+        step_weights(&self.steps[segment], beside((time - begin) / (end - begin))).0
     }
 
     /// The motion (2n) of some ξ at a time.
@@ -156,51 +167,45 @@ impl SegmentErrors {
             nodes: surrogate.nodes.iter().map(|nodes| nodes.iter().map(values).collect()).collect(),
         };
         let truncation = |coefficients: &[f64]| surrogate.basis.truncation(coefficients);
-        let of_line = |nodes: &Vec<Vec<f64>>, line: usize| {
+        let of_line = |nodes: &[Vec<f64>], line: usize| {
             largest(nodes.iter().map(|node| truncation(&node[line * terms..][..terms])))
         };
-        let of_segment = |nodes| (0..surrogate.lines).map(|line| of_line(nodes, line)).collect();
+        let of_step = |nodes: &[Vec<f64>]| (0..surrogate.lines).map(|line| of_line(nodes, line)).collect();
+        let of_segment = |nodes: &Vec<Vec<f64>>| {
+            let steps = 0..nodes.len() / (STEP_NODES - 1);
+            steps.map(|step| of_step(&nodes[step * (STEP_NODES - 1)..][..STEP_NODES])).collect()
+        };
         let times = surrogate.times.iter().map(|time| truncation(time)).collect();
         let lines = surrogate.nodes.iter().map(of_segment).collect();
         Self::between(direct, &predicted).or(&Self { times, lines })
     }
 
-    /// From the differences of values at the motions' samples from what the others predict there, line by line.
-    pub fn of_samples(motions: &SegmentMotions, mut differences: impl FnMut(&[f64]) -> Vec<f64>) -> Self {
-        let mut values = |own: &Vec<f64>| -> Vec<f64> {
-            own.iter().zip(differences(own)).map(|(own, difference)| own - difference).collect()
-        };
-        let predicted = SegmentMotions {
-            samples: motions.samples.clone(),
-            steps: motions.steps.clone(),
-            times: motions.times.iter().map(&mut values).collect(),
-            nodes: motions.nodes.iter().map(|nodes| nodes.iter().map(&mut values).collect()).collect(),
-        };
-        Self::between(motions, &predicted)
-    }
-
     /// Of motions that are predicted. Lines are compared at the times of the direct nodes: where an instant is late,
     /// the motion at the same share of the segment is that of a later time.
-    fn between(direct: &SegmentMotions, predicted: &SegmentMotions) -> Self {
+    pub fn between(direct: &SegmentMotions, predicted: &SegmentMotions) -> Self {
         let count = direct.samples.len();
         let difference = |(own, values): (&Vec<f64>, &Vec<f64>)| largest(own.iter().zip(values).map(|(a, b)| a - b));
         let times = predicted.times.iter().zip(&direct.times).map(difference).collect();
         let of_segment = |segment: usize| {
             let steps = &direct.steps[segment];
             let lines = direct.nodes[segment].first().map_or(0, |node| node.len() / count.max(1));
-            let mut errors = vec![0.0; lines];
+            let mut errors = vec![vec![0.0; lines]; steps.len()];
             for (node, values) in direct.nodes[segment].iter().enumerate() {
                 let share = share_of_node(steps, node);
+                // A node between two steps is of both.
+                let of_steps = node.saturating_sub(1) / (STEP_NODES - 1)..=node / (STEP_NODES - 1);
                 for sample in 0..count {
                     let [begin, end] = [segment, segment + 1].map(|number| direct.times[number][sample]);
                     let time = begin + share * (end - begin);
                     let [begin, end] = [segment, segment + 1].map(|number| predicted.times[number][sample]);
                     let (step, weights) = step_weights(steps, beside((time - begin) / (end - begin)));
                     let nodes = &predicted.nodes[segment][step * (STEP_NODES - 1)..][..STEP_NODES];
-                    for (line, error) in errors.iter_mut().enumerate() {
+                    for line in 0..lines {
                         let at = line * count + sample;
                         let value: f64 = weights.iter().zip(nodes).map(|(weight, node)| weight * node[at]).sum();
-                        *error = largest([*error, value - values[at]]);
+                        for error in errors.iter_mut().take(of_steps.end() + 1).skip(*of_steps.start()) {
+                            error[line] = largest([error[line], value - values[at]]);
+                        }
                     }
                 }
             }
@@ -216,7 +221,24 @@ impl SegmentErrors {
             own.iter_mut().zip(other).for_each(|(own, other)| *own = largest([*own, *other]));
         };
         raise(&mut self.times, &other.times);
-        self.lines.iter_mut().zip(&other.lines).for_each(|(own, other)| raise(own, other));
+        let steps = self.lines.iter_mut().zip(&other.lines).flat_map(|(own, other)| own.iter_mut().zip(other));
+        steps.for_each(|(own, other)| raise(own, other));
         self
+    }
+
+    /// The largest of all steps of each segment, in each of them.
+    #[must_use]
+    pub fn of_segments(mut self) -> Self {
+        for steps in &mut self.lines {
+            let most = |line: usize| largest(steps.iter().map(|errors| errors[line]));
+            let all: Vec<f64> = (0..steps.first().map_or(0, Vec::len)).map(most).collect();
+            steps.iter_mut().for_each(|errors| errors.clone_from(&all));
+        }
+        self
+    }
+
+    /// Of a line in a step of a segment and beside it.
+    pub fn of_line(&self, segment: usize, step: usize, line: usize) -> f64 {
+        largest(self.lines[segment].iter().take(step + 2).skip(step.saturating_sub(1)).map(|errors| errors[line]))
     }
 }

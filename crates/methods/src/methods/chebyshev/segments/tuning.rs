@@ -77,6 +77,10 @@ tuning! {
         step_of_surfaces: f64 = 1e-6, moves "errors of Chebyshev bounds through events";
         /// An end beside a surface is moved with it where it is nearer than so many times the surface's error.
         near_end: f64 = 2.0, moves "errors of Chebyshev bounds through events";
+        /// Shares of the depth of a part from which on samples tell errors of their own.
+        depths_of_errors: [f64; 2] = [1.0 / 32.0, 1.0 / 8.0], moves "errors of Chebyshev bounds through events";
+        /// Samples count for errors at a point that are at this share of its depth, or deeper.
+        shallower: f64 = 0.5, moves "errors of Chebyshev bounds through events";
         /// Candidates of each round in which samples are added.
         candidates: usize = 512, moves "Chebyshev bounds through events";
         /// Corners of the box among the candidates for samples.
