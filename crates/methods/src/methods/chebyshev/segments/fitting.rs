@@ -6,7 +6,7 @@
 
 use super::basis::{Basis, Fitted, Level};
 use super::parts::{Samples, WordPart};
-use super::piece::{Compared, HeldOut, Piece};
+use super::piece::{FittedMotions, Piece, ValidationMotions};
 use super::surrogate::SegmentSurrogate;
 use super::tuning::TUNING;
 use crate::methods::ensemble::{Ensemble, EnsembleError};
@@ -114,9 +114,9 @@ impl Fitting<'_> {
             let left_out = fits(values).into_iter().flat_map(|(_, left_out)| left_out);
             values.iter().zip(left_out).map(|(own, left_out)| own - left_out).collect()
         };
-        let compared = Compared { motions: &motions, predicted: &motions.mapped(without) };
-        let held_out = HeldOut { points: self.points, motions: &self.direct.words[part.word] };
-        Some((misses, Piece::fitted(surrogate, xi, compared, held_out)))
+        let fitted = FittedMotions { motions: &motions, predicted: &motions.mapped(without) };
+        let held_out = ValidationMotions { points: self.points, motions: &self.direct.words[part.word] };
+        Some((misses, Piece::fitted(surrogate, xi, fitted, held_out)))
     }
 }
 

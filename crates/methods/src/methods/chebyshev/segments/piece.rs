@@ -19,14 +19,14 @@ pub(super) struct Piece<'a> {
 
 /// Motions of samples, and those that polynomials through all others predict.
 #[derive(Clone, Copy)]
-pub(super) struct Compared<'m> {
+pub(super) struct FittedMotions<'m> {
     pub motions: &'m SegmentMotions,
     pub predicted: &'m SegmentMotions,
 }
 
 /// Validation samples: ξ of all, and motions of those of the word.
 #[derive(Clone, Copy)]
-pub(super) struct HeldOut<'m> {
+pub(super) struct ValidationMotions<'m> {
     pub points: &'m [Vec<f64>],
     pub motions: &'m SegmentMotions,
 }
@@ -41,8 +41,8 @@ impl<'a> Piece<'a> {
     pub fn fitted(
         surrogate: SegmentSurrogate<'a>,
         samples: Vec<Vec<f64>>,
-        compared: Compared<'_>,
-        held_out: HeldOut<'_>,
+        fitted: FittedMotions<'_>,
+        held_out: ValidationMotions<'_>,
     ) -> Self {
         let margins = |xi: &[f64]| surrogate.ends.iter().map(|end| end.margin(xi)).collect::<Vec<f64>>();
         let of_samples: Vec<Vec<f64>> = samples.iter().map(|xi| margins(xi)).collect();
@@ -55,7 +55,7 @@ impl<'a> Piece<'a> {
             ends.all(|(end, margin)| end.offset == 0.0 || *margin >= 0.0)
         };
         let errors = |own: &[usize], points: &[usize]| {
-            let errors = SegmentErrors::between(&compared.motions.picked(own), &compared.predicted.picked(own));
+            let errors = SegmentErrors::between(&fitted.motions.picked(own), &fitted.predicted.picked(own));
             let direct = held_out.motions.picked(points);
             let at: Vec<Vec<f64>> = direct.samples.iter().map(|&sample| held_out.points[sample].clone()).collect();
             if at.is_empty() { errors } else { errors.or(&SegmentErrors::new(&surrogate, &at, &direct)) }
