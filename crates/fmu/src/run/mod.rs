@@ -8,8 +8,8 @@ mod model_exchange;
 #[cfg(any(unix, windows))]
 mod steps;
 mod task;
-#[cfg(any(unix, windows))]
 pub(crate) mod tuning;
+#[cfg(any(unix, windows))]
 mod worker;
 
 pub use task::{Access, STEP, Task, Unpacked};
