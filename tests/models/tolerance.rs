@@ -271,6 +271,17 @@ fn eight_parameters_take_five_hundred_simulations() {
     assert_eq!(covered, rows.len());
 }
 
+/// About 1.57 s some samples stand at the dead centre, where the slider is at l1 + l2 at most. Over the parameters that
+/// is a ridge, along which the position rises with both lengths alone.
+#[test]
+fn an_end_is_followed_along_a_ridge_to_the_longest_links() {
+    let bounds = run(&within(eight(), 1e-3, Budget::default().simulations));
+    let band = &bounds.outputs[0].bands[0];
+    let (longest, row) = (1.01 * (NOMINAL[0] + NOMINAL[1]), 157);
+    assert!((band.upper[row] - longest).abs() < band.error.total[row], "{} of {longest}", band.upper[row]);
+    assert!(!band.error.unresolved.contains(&true), "{:?}", band.error.unresolved);
+}
+
 /// Parameters in another order are the same parameters.
 #[test]
 #[ignore = "10 s: four parameters in other orders"]

@@ -115,8 +115,7 @@ impl<'a> SegmentSurrogate<'a> {
     /// The motion (2n) of a point at a time on the branch of a segment, which goes on a little beyond its ends: the
     /// shortest segments are no longer than their errors.
     pub fn motion(&self, point: &Point, segment: usize, time: f64) -> impl Iterator<Item = f64> {
-        let [begin, end] = [point.times[segment], point.times[segment + 1]];
-        let (step, weights) = step_weights(&self.steps[segment], beside((time - begin) / (end - begin)));
+        let (step, weights) = self.weights(point, segment, time);
         let nodes = &self.nodes[segment][step * (STEP_NODES - 1)..][..STEP_NODES];
         let terms = point.terms.clone();
         (0..self.lines).map(move |line| {
@@ -127,8 +126,13 @@ impl<'a> SegmentSurrogate<'a> {
 
     /// The step of a segment in which a point is at a time.
     pub fn step(&self, point: &Point, segment: usize, time: f64) -> usize {
+        self.weights(point, segment, time).0
+    }
+
+    /// The step of a segment in which a point is at a time, and the weights of its nodes.
+    fn weights(&self, point: &Point, segment: usize, time: f64) -> (usize, [f64; STEP_NODES]) {
         let [begin, end] = [point.times[segment], point.times[segment + 1]];
-        step_weights(&self.steps[segment], beside((time - begin) / (end - begin))).0
+        step_weights(&self.steps[segment], beside((time - begin) / (end - begin)))
     }
 
     /// The motion (2n) of some ξ at a time.
