@@ -2,9 +2,9 @@
 //!
 //! Parameters at an end of their intervals stay there as long as the gradient points outwards. Along the others the
 //! step follows from the curvature between earlier points (limited-memory BFGS, Nocedal & Wright, Numerical
-//! Optimization, algorithm 7.4). Where such a step promises too little, and as long as there is no curvature, it goes to
-//! where a model that is linear in untried directions is largest (`model`): without curvature that is the corner that the
-//! gradient's signs name.
+//! Optimization, algorithm 7.4). Where such a step promises too little, and as long as there is no curvature, it goes
+//! to where a model that is linear in untried directions is largest (`model`): without curvature that is the corner
+//! that the gradient's signs name.
 
 use super::model::{Bend, Curvature};
 use super::tuning::TUNING;
