@@ -83,6 +83,7 @@ mod robot_wrenches;
 mod rotation;
 mod run_all;
 mod schemes;
+mod several_parameters;
 mod singular;
 mod slider_crank;
 mod snapshots;

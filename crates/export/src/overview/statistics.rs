@@ -69,7 +69,8 @@ pub fn statistics(summary: &Summary) -> String {
         }
         None => {
             let samples = found.samples;
-            format!("the worst case is every case of the box{shares}, by {samples} samples of the surrogate")
+            let products = found.products.map(|count| format!(" and {count} simulated products")).unwrap_or_default();
+            format!("the worst case is every case of the box{shares}, by {samples} samples of the surrogate{products}")
         }
     };
     format!(

@@ -29,7 +29,6 @@ pub struct Followed {
 /// The ends of all outputs in all rows.
 #[derive(Clone, Debug)]
 pub struct FollowedEnds {
-    outputs: usize,
     /// By row and output.
     ends: Vec<Followed>,
     /// Polynomials of the outputs over the whole box, where they are wanted and known.
@@ -38,18 +37,13 @@ pub struct FollowedEnds {
 
 impl FollowedEnds {
     /// By row and output.
-    pub fn new(outputs: usize, ends: Vec<Followed>, surrogate: Option<KeptSurrogate>) -> Self {
-        Self { outputs, ends, surrogate }
+    pub fn new(ends: Vec<Followed>, surrogate: Option<KeptSurrogate>) -> Self {
+        Self { ends, surrogate }
     }
 
     /// Polynomials of the outputs over the whole box, where they are wanted and known.
     pub(super) fn surrogate(&self) -> Option<&KeptSurrogate> {
         self.surrogate.as_ref()
-    }
-
-    /// Of each row the ends of all outputs.
-    pub(super) fn rows(&self) -> impl Iterator<Item = &[Followed]> {
-        self.ends.chunks_exact(self.outputs.max(1))
     }
 
     /// By row and output.

@@ -13,6 +13,8 @@ use crate::numerics::{ParameterBox, SparseBasis, SparseWork};
 #[derive(Clone, Debug, Default)]
 pub struct KeptSurrogate {
     boxes: Vec<KeptBox>,
+    /// By output and row; empty if nothing is known of them.
+    errors: Vec<Vec<f64>>,
 }
 
 /// A sub-box with its polynomials.
@@ -74,7 +76,18 @@ impl KeptRow {
 impl KeptSurrogate {
     /// Over one box.
     pub fn of_box(domain: &ParameterBox, basis: &SparseBasis, rows: Vec<KeptRow>) -> Self {
-        Self { boxes: vec![KeptBox { domain: domain.clone(), basis: basis.clone(), rows }] }
+        let boxes = vec![KeptBox { domain: domain.clone(), basis: basis.clone(), rows }];
+        Self { boxes, errors: Vec::new() }
+    }
+
+    /// With errors of its values, by output and row, that the method knows beside those at the validation samples.
+    pub fn with_errors(self, errors: Vec<Vec<f64>>) -> Self {
+        Self { errors, ..self }
+    }
+
+    /// Error of an output's values in a row, as far as the method knows it; else zero.
+    pub fn error(&self, output: usize, row: usize) -> f64 {
+        self.errors.get(output).map_or(0.0, |errors| errors[row])
     }
 
     /// What does not depend on any parameter: rows of outputs.
@@ -98,7 +111,11 @@ impl KeptSurrogate {
             basis: part.basis.clone(),
             rows: part.rows.iter().map(|row| row.only(part.basis.len(), lines, outputs)).collect(),
         };
-        Self { boxes: self.boxes.iter().map(of_box).collect() }
+        let errors = match self.errors.is_empty() {
+            true => Vec::new(),
+            false => outputs.iter().map(|&output| self.errors[output].clone()).collect(),
+        };
+        Self { boxes: self.boxes.iter().map(of_box).collect(), errors }
     }
 
     /// Rows that are known over the whole box.

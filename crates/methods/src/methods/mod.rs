@@ -36,7 +36,7 @@ pub use followed::{Followed, FollowedEnds, Sensitivity};
 pub use kept::{KeptRow, KeptSurrogate};
 pub use proof::{EnclosedRow, EnclosureEnd, Lost, Proof};
 pub use registry::{About, BoundingMethod, Curve, Refusal, Registered, Varied};
-pub use request::{Budget, MOST_SIMULATIONS, Problem};
+pub use request::{Budget, Keep, MOST_SIMULATIONS, Problem};
 pub use result::{BandBuilder, MethodResult};
 pub use scan::Scan;
 pub use taylor::Taylor;

@@ -206,8 +206,8 @@ macro_rules! methods {
             pub tolerance: Option<f64>,
             /// What may be spent on it.
             pub budget: Budget,
-            /// Whether surrogates are kept after the run.
-            pub keep: bool,
+            /// Which surrogates are kept after the run.
+            pub keep: $crate::methods::Keep,
             $($(#[doc = $doc])* pub $keyword: Option<$Type>,)*
         }
 

@@ -33,6 +33,26 @@ impl Default for Budget {
     }
 }
 
+/// Which surrogate is kept after the run.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Keep {
+    /// None.
+    #[default]
+    Nothing,
+    /// One of the whole box, as exact as the bounds; beyond [`MOST_ON_GRIDS`](super::MOST_ON_GRIDS) parameters one as
+    /// for statistics.
+    WholeBox,
+    /// One whose error is told by simulated products: polynomials through values and gradients, if ends were followed.
+    Statistics,
+}
+
+impl Keep {
+    /// Whether one is kept.
+    pub fn is_any(self) -> bool {
+        self != Self::Nothing
+    }
+}
+
 /// What a method is asked to bound, before anything is simulated.
 #[derive(Clone, Copy, Debug)]
 pub struct Problem {

@@ -136,6 +136,18 @@ impl BandBuilder {
         }
     }
 
+    /// All rows but those that are missing, and the surrogate, if it is to be kept, with its errors.
+    pub(super) fn finish_keeping(
+        self,
+        simulations: usize,
+        simulated: Simulated,
+        kept: Option<KeptSurrogate>,
+    ) -> MethodResult {
+        let result = self.finish(simulations, simulated);
+        let kept = kept.map(|kept| kept.with_errors(result.surrogate.clone()));
+        MethodResult { kept, ..result }
+    }
+
     /// All rows but those that are missing.
     pub fn finish(mut self, simulations: usize, simulated: Simulated) -> MethodResult {
         let rows = self.bands.first().map_or(0, Vec::len);

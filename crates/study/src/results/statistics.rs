@@ -93,6 +93,9 @@ pub struct StatisticsSummary {
     pub outside: f64,
     /// Simulations for a surrogate beyond the box, where laws reach beyond it.
     pub simulations: usize,
+    /// Number of simulated products, where they tell the errors.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub products: Option<usize>,
     /// By output, where it varies most.
     pub outputs: Vec<OutputStatisticsSummary>,
     /// Reduced outputs.

@@ -144,7 +144,7 @@ impl<'s, 'm> AttainedSearch<'s, 'm> {
         let every = (2 * rows * outputs).div_ceil(TUNING.followed_ends).max(1);
         let chosen: Vec<usize> = (0..rows).rev().step_by(every).collect();
         let Some((surfaces, followed)) = self.surfaces(&chosen)? else { return Ok(None) };
-        if self.study.request.keep {
+        if self.study.request.keep.is_any() {
             self.work_of_kept = self.work;
         }
         let middle = vec![0.0; self.study.domain.dimension()];
@@ -181,10 +181,10 @@ impl<'s, 'm> AttainedSearch<'s, 'm> {
         if self.simulated.stop.is_some() {
             return Ok(None);
         }
-        let kept = surfaces.as_ref().filter(|_| self.study.request.keep);
+        let kept = surfaces.as_ref().filter(|_| self.study.request.keep.is_any());
         let kept = kept.and_then(|surfaces| kept::surrogate(self, surfaces, &followed));
         let ends = ends::ends(self, &mut climbs, surfaces.as_ref(), &followed);
-        Ok(Some(FollowedEnds::new(outputs, ends, kept)))
+        Ok(Some(FollowedEnds::new(ends, kept)))
     }
 
     /// A climb to an end from a point.
@@ -277,7 +277,7 @@ impl<'s, 'm> AttainedSearch<'s, 'm> {
     fn surfaces(&mut self, rows: &[usize]) -> Result<Option<Followable>, SimulationError> {
         let k = self.study.domain.dimension();
         let mut points = vec![vec![0.0; k]];
-        let count = if self.study.request.keep {
+        let count = if self.study.request.keep.is_any() {
             TUNING.kept_points
         } else {
             (k + 2).clamp(TUNING.least_points, TUNING.most_points)

@@ -57,7 +57,7 @@ mod zones;
 
 use crate::assemble::{BuildError, Questions};
 use crate::compile::Scheme;
-use crate::methods::{Method, Refusal};
+use crate::methods::{Keep, Method, Refusal};
 use crate::model::{Description, Stepping};
 use crate::reduce::Reduction;
 use crate::results::{Bounds, Summary};
@@ -189,7 +189,7 @@ pub fn run(description: &Description, options: Options) -> Result<(Bounds, Summa
         if model.statistics.asked {
             return statistics::run(&model, description.outputs.len(), &options);
         }
-        let (bounds, summary, _) = reduced::run(&model, &options, false)?;
+        let (bounds, summary, _) = reduced::run(&model, &options, Keep::Nothing)?;
         Ok((bounds, summary))
     });
     let (bounds, summary) = found?;
@@ -211,7 +211,7 @@ pub fn run(description: &Description, options: Options) -> Result<(Bounds, Summa
 pub fn run_keeping(description: &Description, options: Options) -> Result<(Bounds, Summary, Option<Kept>), RunError> {
     let pool = pool(options.threads)?;
     let model = reduced::expanded(description);
-    let (bounds, summary, kept) = pool.install(|| reduced::run(&model, &options, true))?;
+    let (bounds, summary, kept) = pool.install(|| reduced::run(&model, &options, Keep::WholeBox))?;
     let (mut bounds, mut summary) = reduced::shown(description, &model, bounds, summary);
     zones::joined(description, &mut bounds, &mut summary);
     Ok((bounds, summary, kept))

@@ -8,6 +8,7 @@ use super::problem::Study;
 use super::{Options, RunError, reduced};
 use crate::assemble;
 use crate::certificate::Certified;
+use crate::methods::Keep;
 use crate::model::Description;
 use crate::reduce::{Reduction, Subsystem};
 use crate::simulate::Certifier;
@@ -41,7 +42,7 @@ impl Studied<'_> {
 pub(super) fn studied<T>(
     description: &Description,
     options: &Options,
-    keep: bool,
+    keep: Keep,
     then: impl FnOnce(&Studied) -> Result<T, RunError>,
 ) -> Result<T, RunError> {
     (options.stage)(COMPILING);
@@ -62,8 +63,8 @@ pub(super) fn studied<T>(
         study.progress = progress;
         study.stored =
             options.store.map(|store| Stored { store, subsystem: number, assembles_first: options.skip_infeasible });
-        if keep {
-            keep_surrogate(&mut study)?;
+        if keep.is_any() {
+            keep_surrogate(&mut study, keep)?;
         }
         Ok(study)
     });
@@ -108,7 +109,8 @@ pub struct Ready {
 pub fn ready(description: &Description) -> Result<Ready, RunError> {
     built(description)?;
     let model = reduced::expanded(description);
-    studied(&model, &Options::default(), model.statistics.asked, |found| {
+    let keep = if model.statistics.asked { Keep::Statistics } else { Keep::Nothing };
+    studied(&model, &Options::default(), keep, |found| {
         let sum = |of: fn(&Study) -> usize| found.studies.iter().map(of).sum();
         let sizes = [
             sum(|study| study.simulator.system.coordinates_of_motion().count()),
@@ -147,5 +149,5 @@ pub fn equations(description: &Description) -> Result<Vec<Certified>, RunError> 
     let model = reduced::expanded(description);
     let list =
         |found: &Studied| found.studies.iter().map(|study| Certifier::new(&study.simulator).certified()).collect();
-    studied(&model, &Options::default(), false, |found| Ok(list(found)))
+    studied(&model, &Options::default(), Keep::Nothing, |found| Ok(list(found)))
 }

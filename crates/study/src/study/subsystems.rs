@@ -11,6 +11,7 @@ use super::ready::{Studied, studied};
 use super::reduced::{Parameters, together};
 use super::single;
 use super::{Options, RunError, feasible, zones};
+use crate::methods::Keep;
 use crate::model::{Analysis, Description, ParameterValue};
 use crate::numerics::ParameterBox;
 use crate::reduce::Subsystem;
@@ -27,7 +28,7 @@ use crate::simulate::SimulationError;
 pub(super) fn run(
     description: &Description,
     options: &Options,
-    keep: bool,
+    keep: Keep,
 ) -> Result<(Bounds, Summary, Option<Kept>), RunError> {
     studied(description, options, keep, |found| run_all(description, options, keep, found))
 }
@@ -35,7 +36,7 @@ pub(super) fn run(
 fn run_all(
     description: &Description,
     options: &Options,
-    keep: bool,
+    keep: Keep,
     &Studied { left_out, subsystems, studies, .. }: &Studied,
 ) -> Result<(Bounds, Summary, Option<Kept>), RunError> {
     let count = studies.len();
@@ -83,7 +84,7 @@ fn run_all(
     if deferred {
         return Err(SimulationError::Deferred.into());
     }
-    let kept = kept.into_iter().collect::<Option<Vec<_>>>().filter(|_| keep);
+    let kept = kept.into_iter().collect::<Option<Vec<_>>>().filter(|_| keep.is_any());
     let kept = kept.map(|parts| Kept::of_parts(parts, description.outputs.len()));
     let (mut bounds, mut summary) = Whole::of(description, left_out.to_vec()).merge(ran);
     arrange(description, &mut bounds, &mut summary);

@@ -1,34 +1,87 @@
 //! Ends that were followed along gradients as bounds, in place of a surrogate.
 
+use super::adaptive::Goal;
 use super::tuning::TUNING;
-use crate::methods::ensemble::Simulated;
+use crate::methods::ensemble::{Ensemble, Simulated};
 use crate::methods::followed::{Followed, FollowedEnds};
+use crate::methods::request::Keep;
 use crate::methods::result::{BandBuilder, MethodResult};
+use crate::numerics::SAFETY_OF_SURROGATE;
 
 /// For more parameters a sparse grid is not tried where ends that were followed along gradients miss the tolerance: its
 /// nodes and its own search for ends grow with a power of their number.
 pub const MOST_ON_GRIDS: usize = TUNING.most_on_grids;
 
-/// Whether they are the bounds of a study with so many parameters, which may keep a surrogate: that is one of the whole
-/// box, and of few parameters a grid has the smaller error. `is_within`: whether the ends of a row meet the tolerance.
-pub(super) fn are_bounds(
-    followed: &FollowedEnds,
+/// Followed ends, and which of them meet the tolerance.
+pub(super) struct FollowedWithin<'f> {
+    followed: &'f FollowedEnds,
     parameters: usize,
-    keeps: bool,
-    is_within: impl FnMut((usize, &[Followed])) -> bool,
-) -> bool {
-    let are_many = parameters > MOST_ON_GRIDS;
-    let has_kept = !keeps || are_many && followed.surrogate().is_some();
-    has_kept && (are_many || followed.rows().enumerate().all(is_within))
+    outputs: usize,
+    /// By row and output: whether they meet it, in rows that count.
+    is_within: Vec<bool>,
+    /// Whether all of them do.
+    all: bool,
 }
 
-/// As what a method finds, of so many outputs and rows. The simulations were counted where they were made.
-pub(super) fn bounds(followed: &FollowedEnds, outputs: usize, rows: usize) -> MethodResult {
-    let mut bands = BandBuilder::new(outputs, rows);
-    for (index, found) in followed.ends().iter().enumerate() {
-        let (row, output) = (index / outputs, index % outputs);
-        bands.set(row, output, found.range, found.error);
-        bands.set_sensitivity(row, output, found.sensitivity.clone());
+impl<'f> FollowedWithin<'f> {
+    /// Of the outputs of an ensemble.
+    pub fn new(followed: &'f FollowedEnds, goal: &Goal, ensemble: &dyn Ensemble) -> Self {
+        let outputs = ensemble.outputs();
+        let counts = |index: usize| index / outputs < goal.outputs[index % outputs].rows;
+        let meets = |(index, found): (usize, &Followed)| {
+            SAFETY_OF_SURROGATE * found.error <= goal.outputs[index % outputs].allowed
+        };
+        let meet: Vec<bool> = followed.ends().iter().enumerate().map(meets).collect();
+        let all = (0..meet.len()).all(|index| meet[index] || !counts(index));
+        let is_within = (0..meet.len()).map(|index| meet[index] && counts(index)).collect();
+        Self { followed, parameters: ensemble.domain().dimension(), outputs, is_within, all }
     }
-    MethodResult { kept: followed.surrogate().cloned(), ..bands.finish(0, Simulated::default()) }
+
+    /// Whether they are all bounds. A surrogate that is kept of the whole box is a grid if the parameters are few.
+    pub fn are_bounds(&self, keep: Keep) -> bool {
+        let are_many = self.parameters > MOST_ON_GRIDS;
+        let has_kept = match keep {
+            Keep::Nothing => true,
+            Keep::WholeBox => are_many && self.followed.surrogate().is_some(),
+            Keep::Statistics => self.followed.surrogate().is_some(),
+        };
+        has_kept && (are_many || self.all)
+    }
+
+    /// All of them as what a method finds. The simulations were counted where they were made.
+    pub fn bounds(&self) -> MethodResult {
+        let ends = self.followed.ends();
+        let mut bands = BandBuilder::new(self.outputs, ends.len() / self.outputs.max(1));
+        for (index, found) in ends.iter().enumerate() {
+            bands.set(index / self.outputs, index % self.outputs, found.range, found.error);
+            bands.set_sensitivity(index / self.outputs, index % self.outputs, found.sensitivity.clone());
+        }
+        MethodResult { kept: self.followed.surrogate().cloned(), ..bands.finish(0, Simulated::default()) }
+    }
+
+    /// Leaves a goal without outputs of which they are the bounds, unless a surrogate of the whole box is kept.
+    pub fn leave(&self, goal: &mut Goal, keep: Keep) {
+        if keep == Keep::WholeBox {
+            return;
+        }
+        for (index, output) in goal.outputs.iter_mut().enumerate() {
+            let is_open = |row: &usize| !self.is_within[row * self.outputs + index];
+            output.rows = (0..output.rows).rev().find(is_open).map_or(0, |row| row + 1);
+        }
+    }
+
+    /// Replaces bounds by ends that meet the tolerance, or of which less is open. A surrogate that is kept has its own
+    /// errors.
+    pub fn replace(&self, result: &mut MethodResult) {
+        for (index, (found, is_within)) in self.followed.ends().iter().zip(&self.is_within).enumerate() {
+            let (row, output) = (index / self.outputs, index % self.outputs);
+            let error = &mut result.surrogate[output][row];
+            if row < result.reached && (*is_within || found.error < *error) {
+                *error = found.error;
+                result.bands[output][row] = found.range;
+                result.steps[output][row] = f64::NAN;
+                result.sensitivities[output][row].clone_from(&found.sensitivity);
+            }
+        }
+    }
 }

@@ -20,16 +20,16 @@ pub(crate) mod tuning;
 
 use super::BoundsRequest;
 use super::ensemble::{Ensemble, EnsembleError, Interrupted, Observed, Sampling, Simulated, Until, lines};
-use super::followed::Followed;
 use super::kept::{KeptRow, KeptSurrogate};
 use super::registry::{About, BoundingMethod, CostCurve, Refusal, Registered, Varied};
 use super::request::{self, MOST_SIMULATIONS, Problem};
 use super::result::{BandBuilder, MethodResult};
 use super::validation::Validation;
 use crate::grammar::{Fields, Reader, SymbolTable};
-use crate::numerics::{ParameterBox, PolynomialRange, RangeKind, SAFETY_OF_SURROGATE, Sample, Surrogate, largest};
+use crate::numerics::{ParameterBox, PolynomialRange, RangeKind, Sample, Surrogate, largest};
 use crate::syntax::codes::Code;
 use adaptive::{Goal, OutputGoal};
+use along_gradients::FollowedWithin;
 pub use along_gradients::MOST_ON_GRIDS;
 pub use combined::ends_of_combinations;
 pub use composition::can_compose;
@@ -286,7 +286,7 @@ impl BoundingMethod for Chebyshev {
         {
             return Ok(result);
         }
-        let mut kept_rows = request.keep.then(Vec::new);
+        let mut kept_rows = request.keep.is_any().then(Vec::new);
         let (bands, simulated) = match self.expand {
             Expand::Coordinates if composes => {
                 composed(ensemble, &surrogate, &samples, validation, kept_rows.as_mut())?
@@ -298,7 +298,7 @@ impl BoundingMethod for Chebyshev {
             }
         };
         let kept = kept_rows.map(|rows| KeptSurrogate::of_box(ensemble.domain(), surrogate.basis(), rows));
-        Ok(MethodResult { kept, ..bands.finish(samples.len(), simulated) })
+        Ok(bands.finish_keeping(samples.len(), simulated, kept))
     }
 }
 
@@ -319,27 +319,26 @@ fn adapted(
         let time = largest(time[..rows].iter().copied());
         OutputGoal { allowed: (allowed - time).max(TUNING.least_share * allowed), rows }
     };
-    let goal = Goal { outputs: (0..ensemble.outputs()).map(of_output).collect(), budget: request.budget, spent };
+    let mut goal = Goal { outputs: (0..ensemble.outputs()).map(of_output).collect(), budget: request.budget, spent };
     if let Some(found) = segments::adapted(ensemble, &goal, validation)? {
         return Ok(found);
     }
-    let is_within = |(row, ends): (usize, &[Followed])| {
-        goal.share(row, ends.iter().map(|found| SAFETY_OF_SURROGATE * found.error)) <= 1.0
-    };
-    let parameters = ensemble.domain().dimension();
-    if let Some(followed) = ensemble.followed()
-        && along_gradients::are_bounds(followed, parameters, request.keep, is_within)
-    {
-        return Ok(along_gradients::bounds(followed, ensemble.outputs(), ensemble.rows()));
-    }
-    let adapted = adaptive::search(ensemble, goal, validation, request.keep)?;
     let outputs = ensemble.outputs();
+    let followed = ensemble.followed().map(|followed| FollowedWithin::new(followed, &goal, ensemble));
+    if let Some(followed) = &followed {
+        if followed.are_bounds(request.keep) {
+            return Ok(followed.bounds());
+        }
+        followed.leave(&mut goal, request.keep);
+    }
+    let adapted = adaptive::search(ensemble, goal, validation, request.keep.is_any())?;
     let mut bands = BandBuilder::new(outputs, ensemble.rows());
     for (index, estimate) in adapted.found.into_iter().enumerate() {
         bands.set_estimate(index / outputs, index % outputs, estimate);
     }
-    let result = bands.finish(adapted.simulations - spent, adapted.simulated);
-    Ok(MethodResult { order: Some(adapted.order), boxes: Some(adapted.boxes), kept: adapted.kept, ..result })
+    let mut result = bands.finish_keeping(adapted.simulations - spent, adapted.simulated, adapted.kept);
+    followed.iter().for_each(|followed| followed.replace(&mut result));
+    Ok(MethodResult { order: Some(adapted.order), boxes: Some(adapted.boxes), ..result })
 }
 
 /// The outputs follow from the expanded independent coordinates.

@@ -14,6 +14,7 @@ mod wide;
 mod worst;
 
 use super::{Options, RunError, pool, reduced, statistics};
+use crate::methods::Keep;
 use crate::model::Description;
 use crate::numerics::statistics::normal_quantile;
 use crate::results::{AllocatedTolerance, Allocation, Criterion, NotMet, Summary, ToleranceZone, TradePoint, Verdict};
@@ -204,11 +205,14 @@ impl Allocator<'_> {
             // them.
             statistics::run(&model, 0, &options)?
         } else {
-            let (bounds, summary, _) = reduced::run(&model, &options, false)?;
+            let (bounds, summary, _) = reduced::run(&model, &options, Keep::Nothing)?;
             (bounds, summary)
         };
         allocation.confirming += run_simulations(&summary);
-        allocation.confirming += summary.statistics.as_ref().map_or(0, |found| found.summary.simulations);
+        allocation.confirming += summary
+            .statistics
+            .as_ref()
+            .map_or(0, |found| found.summary.simulations + found.summary.products.unwrap_or(0));
         Ok(summary)
     }
 

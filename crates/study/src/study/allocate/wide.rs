@@ -4,7 +4,7 @@ use super::items::{Item, items, with_tolerances};
 use super::surface::Surface;
 use super::tuning::TUNING;
 use super::{AllocateError, AllocateOptions};
-use crate::methods::{Chebyshev, Degree, Method};
+use crate::methods::{Chebyshev, Degree, Keep, Method};
 use crate::model::Description;
 use crate::results::Summary;
 use crate::study::{Kept, Options, RunError, statistics, subsystems};
@@ -30,7 +30,7 @@ pub fn surrogate(model: &Description, asked: AllocateOptions, options: &Options)
         (options.stage)("the surrogate over the widest tolerances");
         for order in 0..=TUNING.raised_orders {
             let only = Options { methods: Some(vec![Method::Chebyshev]), ..of(options) };
-            let ran = subsystems::run(&wide, &only, true);
+            let ran = subsystems::run(&wide, &only, Keep::WholeBox);
             let failure = match ran {
                 Ok((_, summary, kept)) => {
                     simulations += run_simulations(&summary);

@@ -6,7 +6,7 @@ use crate::study::problem::{Study, problem};
 use rayon::prelude::*;
 
 use super::kept::KeptPart;
-use crate::methods::{KeptSurrogate, Method, Refusal};
+use crate::methods::{Keep, KeptSurrogate, Method, Refusal};
 use crate::numerics::{BandError, Sample, largest, step_error, surrogate_error};
 use crate::simulate::SimulationError;
 
@@ -17,16 +17,16 @@ const METHOD: Method = Method::Chebyshev;
 ///
 /// # Errors
 /// Where that method cannot bound the subsystem.
-pub fn keep_surrogate(study: &mut Study) -> Result<(), Refusal> {
+pub fn keep_surrogate(study: &mut Study, keep: Keep) -> Result<(), Refusal> {
     let problem = problem(study.description, &study.simulator);
-    study.request.keep = true;
+    study.request.keep = keep;
     study.request.ask(METHOD, &problem);
     study.request.methods_mut().into_iter().try_for_each(|(_, method)| method.fit(&problem))
 }
 
 /// Surrogate kept of a run, with the errors of its values in the first `rows` rows; where requested and known.
 pub fn kept(study: &Study, results: &mut Results, rows: usize) -> Option<KeptPart> {
-    if !study.request.keep {
+    if !study.request.keep.is_any() {
         return None;
     }
     let times: Vec<f64> = (0..rows).map(|row| results.bounded.plan.schedule.time(row)).collect();
@@ -73,7 +73,7 @@ fn errors_of_values(
         let surrogate = |row: usize| {
             let values = &own[row][output * samples.len()..][..samples.len()];
             let found = surrogate_error(values, &validation.direct.at(row, output));
-            largest([found, outcome.result.surrogate[output][row]])
+            largest([found, part.surrogate.error(output, row)])
         };
         let time = |row: usize| {
             let halved = validation.halved.at(row, output);

@@ -111,6 +111,13 @@ impl Kept {
         &self.parts[part].part.errors[index]
     }
 
+    /// Whether values of the first so many outputs, and all reduced outputs and margins, are within the tolerance.
+    pub fn is_resolved(&self, outputs: usize) -> bool {
+        let reduced = self.parts.iter().filter_map(|placed| placed.part.reduced.as_ref());
+        (0..outputs).all(|output| !self.error(output).unresolved.contains(&true))
+            && reduced.into_iter().all(KeptReduced::is_resolved)
+    }
+
     /// Numbers of the uncertain parameters on which an output may depend.
     pub fn parameters(&self, output: usize) -> &[usize] {
         &self.parts[self.indices[output].0].parameters

@@ -5,6 +5,7 @@ use super::goal::{Goal, Merit};
 use super::surface::{self, Surface, about, scale};
 use super::tuning::TUNING;
 use super::{DesignError, Question};
+use crate::methods::Keep;
 use crate::model::{Description, Requirement};
 use crate::results::{
     Allocation, Bounds, DesignKind, DesignPoint, NotMet, RequirementSummary, Summary, Verdict, foremost,
@@ -98,7 +99,7 @@ pub fn studied(
 }
 
 /// A run of a model, which may refine itself.
-type Study = fn(&Description, &Options, bool) -> Result<(Bounds, Summary, Option<Kept>), RunError>;
+type Study = fn(&Description, &Options, Keep) -> Result<(Bounds, Summary, Option<Kept>), RunError>;
 
 /// Margins by a study.
 struct Margins {
@@ -120,7 +121,7 @@ fn margins(
     let objective = &question.model.requirements[question.required()..];
     // One of reduced outputs is a requirement of the study.
     model.requirements.extend(objective.iter().filter(|own| !is_over_time(own)).cloned());
-    let Some((bounds, summary, _)) = checked(study(&model, options, false), options)? else { return Ok(None) };
+    let Some((bounds, summary, _)) = checked(study(&model, options, Keep::Nothing), options)? else { return Ok(None) };
     let mut known = summary.requirements.iter();
     let margin = |own: &Requirement| {
         let of_study = known.next();

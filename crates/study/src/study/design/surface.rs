@@ -6,7 +6,7 @@ use super::axes::Axes;
 use super::goal::Goal;
 use super::tuning::TUNING;
 use super::{DesignError, Question};
-use crate::methods::Method;
+use crate::methods::{Keep, Method};
 use crate::model::Requirement;
 use crate::study::allocate::run_simulations;
 use crate::study::allocate::tuning::TUNING as ALLOCATE;
@@ -46,7 +46,7 @@ impl Surface {
         for _ in 0..TUNING.narrower_regions {
             let over = axes.over(model, &region, question.share.is_some());
             let options = Options { methods: Some(vec![Method::Chebyshev]), store: None, ..*options };
-            match subsystems::run(&over, &options, true) {
+            match subsystems::run(&over, &options, Keep::WholeBox) {
                 Ok((_, summary, kept)) => {
                     simulations += run_simulations(&summary);
                     if let Some(kept) = kept.filter(is_known) {

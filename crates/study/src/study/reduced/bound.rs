@@ -10,8 +10,8 @@ use super::slopes::OfValues;
 use super::tuning::TUNING;
 use super::verdicts::verdicts;
 use crate::methods::{
-    BandBuilder, BoundingMethod, Ensemble, Ensembles, Expand, MOST_ON_GRIDS, Method, MethodResult, Observed, Sampling,
-    Simulated, Until, Validation, ends_of_combinations,
+    BandBuilder, BoundingMethod, Ensemble, Ensembles, Expand, Method, MethodResult, Observed, Sampling, Simulated,
+    Until, Validation, ends_of_combinations,
 };
 use crate::model::ReducedOutput;
 use crate::numerics::clock::Instant;
@@ -185,9 +185,7 @@ fn bounds_of(
     let ends = ends_of_combinations(ensembles.direct);
     let validation =
         Validation::run(ensembles, Observed::Motion, study.request.degree(), ends).map_err(simulation_error)?;
-    // Of few parameters grids are dense enough.
-    if study.domain.dimension() > MOST_ON_GRIDS
-        && !slopes.jump()
+    if !slopes.jump()
         && let Some((_, _, ends)) = attained(study, slopes.values, slopes, schedule, &validation)?
     {
         slopes.values.follow(ends);

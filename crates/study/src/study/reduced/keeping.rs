@@ -17,7 +17,7 @@ pub fn kept_reduced(
     values: &Arc<Values>,
     unreliable: bool,
 ) -> Option<KeptReduced> {
-    if !study.request.keep {
+    if !study.request.keep.is_any() {
         return None;
     }
     let index = results.methods.iter().position(|(method, _)| *method == Method::Chebyshev)?;
@@ -31,7 +31,7 @@ pub fn kept_reduced(
     let of_value = |value: usize| {
         let direct = validation.direct.at(0, value);
         let known = &own[value * samples.len()..][..samples.len()];
-        let surrogate = largest([surrogate_error(known, &direct), outcome.result.surrogate[value][0]]);
+        let surrogate = largest([surrogate_error(known, &direct), kept.surrogate.error(value, 0)]);
         let correction = validation.corrections(value, 1, None)[0];
         let time = correction.of(step_error(&direct, &validation.halved.at(0, value)));
         let ranges = &outcome.result.bands[value][..1];

@@ -26,6 +26,11 @@ impl KeptReduced {
         self.errors[value].decisive(0).unwrap_or(f64::NAN)
     }
 
+    /// Whether all values are within the tolerance.
+    pub fn is_resolved(&self) -> bool {
+        self.errors.iter().all(|error| !error.unresolved.contains(&true))
+    }
+
     /// The first `count` values at samples of the subsystem's box, one after the other, sample by sample. In parallel,
     /// with the same bits for any number of threads.
     pub fn values<P: AsRef<[f64]> + Sync>(&self, count: usize, samples: &[P]) -> Vec<f64> {

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use super::super::{Kept, Options, RunError, subsystems};
 use super::tuning::TUNING;
-use crate::methods::{Chebyshev, Degree};
+use crate::methods::{Chebyshev, Degree, Keep};
 use crate::model::{Description, Stepping};
 use crate::numerics::clock::Instant;
 use crate::results::{Bounds, MethodSummary, RequirementSummary, Summary, Verdict};
@@ -17,7 +17,7 @@ const UNFINISHED: &str = "interrupted in a refining round: results are those of 
 ///
 /// # Errors
 /// As for any run.
-pub fn run(model: &Description, options: &Options, keep: bool) -> Result<(Bounds, Summary, Option<Kept>), RunError> {
+pub fn run(model: &Description, options: &Options, keep: Keep) -> Result<(Bounds, Summary, Option<Kept>), RunError> {
     let mut found = subsystems::run(model, options, keep)?;
     if model.bounds.tolerance.is_some() {
         return Ok(found);

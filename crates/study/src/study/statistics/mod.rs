@@ -2,12 +2,13 @@
 //! and the linearised tolerance stack. Under random excitations they are of simulated motions.
 
 mod causes;
+mod control_variates;
 mod laws;
 mod numbers;
+mod products;
 mod random;
 mod realisations;
 mod requirements;
-mod residuals;
 mod rows;
 mod stack;
 pub(crate) mod tuning;
@@ -15,7 +16,7 @@ mod zones;
 
 use super::answers::Kept;
 use super::{Options, RunError, reduced, subsystems};
-use crate::methods::Method;
+use crate::methods::{Keep, Method};
 use crate::model::{Description, ParameterValue};
 use crate::numerics::BandError;
 use crate::results::{
@@ -32,7 +33,7 @@ const INTERRUPTED: &str = "interrupted before statistics were done";
 /// # Errors
 /// As for any run. Where statistics alone fail, the summary says why.
 pub(super) fn run(description: &Description, shown: usize, options: &Options) -> Result<(Bounds, Summary), RunError> {
-    let (bounds, mut summary, kept) = reduced::run(description, options, true)?;
+    let (bounds, mut summary, kept) = reduced::run(description, options, Keep::Statistics)?;
     let found = match &kept {
         _ if (options.interrupted)() => Err(INTERRUPTED.to_owned()),
         _ if random::is_random(description) => random::of_motions(description, shown, options),
@@ -67,7 +68,7 @@ fn of_run(
         let wider = laws.widened(description);
         let methods = Some(vec![Method::Chebyshev]);
         let options = Options { methods, threads: options.threads, ..quiet(options) };
-        match subsystems::run(&wider, &options, true) {
+        match subsystems::run(&wider, &options, Keep::Statistics) {
             Ok((_, summary, Some(found))) if follows(description, kept, &found) => {
                 simulations = summary.methods.iter().map(|method| method.simulations).sum();
                 wide = Some(found);
@@ -87,7 +88,7 @@ fn of_run(
         }
     }
     let kept = wide.as_ref().unwrap_or(kept);
-    let rows = Rows::new(description, options, &laws, kept)?.with_residuals(shown)?;
+    let rows = Rows::new(description, options, &laws, kept)?.with_products(shown)?;
     let outputs = rows.outputs(shown)?;
     let (requirements, together) = requirements::all(&rows)?;
     let reduced = numbers::all(&rows)?;
@@ -98,6 +99,7 @@ fn of_run(
         left_out: laws.left_out(),
         outside: laws.outside(),
         simulations,
+        products: rows.products.as_ref().map(|products| products.samples.len()),
         outputs: outputs.iter().filter_map(|(index, output)| side_by_side(&rows, bounds, *index, output)).collect(),
         reduced,
         requirements,

@@ -84,6 +84,7 @@ pub(super) fn of_motions(
     let reduced = sampled.numbers();
     let (outputs, summaries) = outputs.into_iter().unzip();
     let summary = StatisticsSummary {
+        products: None,
         samples: count,
         parameters,
         quantiles: asked.quantiles.clone(),

@@ -31,6 +31,8 @@ struct Together<'a> {
     scales: Vec<f64>,
     /// Whether a sample fulfils all of them, by the sign of the errors.
     fulfilled: Vec<[bool; 3]>,
+    /// The same of simulated products, by the sign of the steps' errors; none if there are none.
+    products: Vec<[bool; 3]>,
     /// Samples of the first replicate with the least margins: the margin in its own scale, and the sample's index.
     least: Vec<(f64, usize)>,
 }
@@ -51,22 +53,26 @@ pub(super) fn all(rows: &Rows) -> Result<(Vec<YieldSummary>, Option<YieldSummary
     for group in numbers.chunks(TUNING.requirements_at_once) {
         let own = kept.only(group);
         let values = sampled(rows, &own, &samples)?;
-        let at_products = rows.residuals.as_ref().map(|residuals| (residuals, own.values(&residuals.samples)));
+        let at_products = rows.products.as_ref().map(|products| (products, own.values(&products.samples)));
         for ((index, &number), values) in group.iter().enumerate().zip(values) {
             rows.progress(number, requirements.len());
             let requirement = &requirements[number];
             let (of_box, time) = (kept.error(number), kept.time_error(number));
             let (error, doubt) = match &at_products {
-                Some((residuals, found)) => {
-                    let own = &found[index * residuals.samples.len()..][..residuals.samples.len()];
-                    let (error, doubt) = residuals.of_margin(number, own, &values, of_box - time);
+                Some((products, found)) => {
+                    let own = &found[index * products.samples.len()..][..products.samples.len()];
+                    let (error, doubt) = products.of_margin(number, own, &values, of_box - time);
                     (error + time, doubt)
                 }
                 None => (of_box, 0.0),
             };
             let mut alone = Together::new(rows, &requirement.name, &samples);
-            alone.add(&values, error, doubt);
-            together.add(&values, error, doubt);
+            for own in [&mut alone, &mut together] {
+                own.add(&values, error, doubt);
+                if let Some(products) = &rows.products {
+                    own.add_products(products.margins(number), time);
+                }
+            }
             if let Some(mut summary) = alone.summary(&kept.only(&[number])) {
                 capability(rows, requirement, &values, &mut summary)?;
                 each.push(summary);
@@ -95,7 +101,23 @@ impl<'a> Together<'a> {
     fn new(rows: &'a Rows, name: &'a str, samples: &[Vec<&[f64]>]) -> Self {
         let count = samples.iter().map(Vec::len).sum();
         let (errors, scales, least) = (Vec::new(), Vec::new(), Vec::new());
-        Self { rows, name, doubt: 0.0, errors, scales, fulfilled: vec![[true; 3]; count], least }
+        let products = vec![[true; 3]; rows.products.as_ref().map_or(0, |products| products.samples.len())];
+        Self { rows, name, doubt: 0.0, errors, scales, fulfilled: vec![[true; 3]; count], products, least }
+    }
+
+    /// Adds the margins of simulated products, with the error that the steps leave.
+    fn add_products<'v>(&mut self, margins: impl Iterator<Item = &'v f64>, time: f64) {
+        for (fulfilled, margin) in self.products.iter_mut().zip(margins) {
+            fulfilled.iter_mut().zip(SIGNS).for_each(|(own, sign)| *own &= *margin >= sign * time);
+        }
+    }
+
+    /// The interval of the share that fulfils them by simulated products alone; all of it if there are none.
+    fn of_products(&self) -> [f64; 2] {
+        if self.products.is_empty() {
+            return [0.0, 1.0];
+        }
+        interval_of(&self.products)
     }
 
     /// Adds a requirement with the margins of all samples, their error, and the share of products with a larger one.
@@ -129,9 +151,8 @@ impl<'a> Together<'a> {
             return None;
         }
         let count = self.fulfilled.len();
-        let seen = [0, 1, 2].map(|sign| self.fulfilled.iter().filter(|own| own[sign]).count());
-        let share = seen[1];
-        let mut interval = [share_interval(seen[0], count)[0], share_interval(seen[2], count)[1]];
+        let share = self.fulfilled.iter().filter(|own| own[1]).count();
+        let mut interval = interval_of(&self.fulfilled);
         let mut fails = 1.0 - share as f64 / count as f64;
         let (mut samples, mut method) = (count, None);
         if count - share < TUNING.many_failing
@@ -147,6 +168,12 @@ impl<'a> Together<'a> {
             }
         }
         interval = [(interval[0] - self.doubt).max(0.0), (interval[1] + self.doubt).min(1.0)];
+        let of_products = self.of_products();
+        if of_products[1] - of_products[0] < interval[1] - interval[0] {
+            interval = of_products;
+            fails = fails.clamp(1.0 - interval[1], 1.0 - interval[0]);
+            (samples, method) = (self.products.len(), None);
+        }
         // What lies outside of the surrogate counts against it.
         interval[0] *= 1.0 - self.rows.laws.left_out();
         let ppm = |share: f64| 1e6 * (1.0 - share);
@@ -202,6 +229,12 @@ impl<'a> Together<'a> {
         };
         self.least.iter().map(scores).collect()
     }
+}
+
+/// The 95 % confidence interval of the share that fulfils something, by the sign of the errors.
+fn interval_of(fulfilled: &[[bool; 3]]) -> [f64; 2] {
+    let seen = |sign: usize| fulfilled.iter().filter(|own| own[sign]).count();
+    [share_interval(seen(0), fulfilled.len())[0], share_interval(seen(2), fulfilled.len())[1]]
 }
 
 /// How large values are, on average.

@@ -6,13 +6,14 @@ use rayon::prelude::*;
 
 use super::INTERRUPTED;
 use super::causes::{Cause, causes};
+use super::control_variates::{ControlVariate, Moments};
 use super::laws::Laws;
-use super::residuals::{AROUND, Residual, Residuals};
+use super::products::Products;
 use super::tuning::TUNING;
 use crate::model::Description;
 use crate::numerics::largest;
-use crate::numerics::statistics::{Estimate, REPLICATES, Replicates};
-use crate::results::{OutputStatistics, Uncertain};
+use crate::numerics::statistics::{REPLICATES, Replicates};
+use crate::results::OutputStatistics;
 use crate::simulate::is_one_number;
 use crate::study::Options;
 use crate::study::answers::{Evaluator, Kept};
@@ -26,15 +27,13 @@ pub(super) struct Rows<'a> {
     evaluator: Evaluator<'a>,
     /// By replicate.
     samples: Vec<Vec<f64>>,
-    /// Of many parameters.
-    pub residuals: Option<Residuals>,
+    /// If the surrogate of several parameters is not within the tolerance.
+    pub products: Option<Products>,
 }
 
 /// What one row says of one output.
 struct RowStatistics {
-    mean: Uncertain,
-    deviation: Uncertain,
-    quantiles: Vec<Uncertain>,
+    moments: Moments,
     linear: f64,
     rss: f64,
     resolved: bool,
@@ -57,16 +56,16 @@ impl<'a> Rows<'a> {
         // The largest power of two that is not more.
         let count = 1 << (count / REPLICATES).ilog2();
         let samples = (0..REPLICATES).into_par_iter().map(|number| laws.samples(number, count)).collect();
-        Ok(Self { description, options, laws, kept, evaluator, samples, residuals: None })
+        Ok(Self { description, options, laws, kept, evaluator, samples, products: None })
     }
 
-    /// With errors from simulations at samples of the laws, where the parameters are many.
+    /// With errors from simulations at samples of the laws, where the surrogate is not within the tolerance.
     ///
     /// # Errors
     /// Where these cannot be simulated.
-    pub fn with_residuals(self, outputs: usize) -> Result<Self, String> {
-        let residuals = Residuals::of(self.description, self.options, self.laws, outputs);
-        Ok(Self { residuals: residuals.map_err(|error| error.to_string())?, ..self })
+    pub fn with_products(self, outputs: usize) -> Result<Self, String> {
+        let products = Products::of(self.description, self.options, self.laws, self.kept, outputs);
+        Ok(Self { products: products.map_err(|error| error.to_string())?, ..self })
     }
 
     /// Tells the current activity.
@@ -127,18 +126,18 @@ impl<'a> Rows<'a> {
         };
         let rows = (0..self.kept.times().len()).into_par_iter().map(of_row);
         let mut rows: Vec<RowStatistics> = rows.collect::<Result<_, String>>()?;
-        let deviation = |row: &usize| rows[*row].deviation.value;
+        let deviation = |row: &usize| rows[*row].moments.deviation.value;
         let known = (0..rows.len()).filter(|row| deviation(row).is_finite());
         if let Some(widest) = known.max_by(|a, b| deviation(a).total_cmp(&deviation(b)).then(b.cmp(a))) {
             rows[widest] = self.of_row(widest, output, 1)?;
         }
-        let quantile = |index: usize| rows.iter().map(|row| row.quantiles[index]).collect();
+        let quantile = |index: usize| rows.iter().map(|row| row.moments.quantiles[index]).collect();
         let (name, unit) = self.kept.named(output);
         Ok(OutputStatistics {
             name: name.to_owned(),
             unit: unit.to_owned(),
-            mean: rows.iter().map(|row| row.mean).collect(),
-            deviation: rows.iter().map(|row| row.deviation).collect(),
+            mean: rows.iter().map(|row| row.moments.mean).collect(),
+            deviation: rows.iter().map(|row| row.moments.deviation).collect(),
             quantiles: (0..self.description.statistics.quantiles.len()).map(quantile).collect(),
             linear: rows.iter().map(|row| row.linear).collect(),
             rss: rows.iter().map(|row| row.rss).collect(),
@@ -150,53 +149,40 @@ impl<'a> Rows<'a> {
         self.go_on()?;
         let stated = self.kept.error(output);
         let own_error = self.own_error(row, output, stated.total[row]);
-        let residual = self.residual(row, output);
-        let asked = &self.description.statistics.quantiles;
-        let (around, shares) = self.shares(residual.is_some());
+        let variate = self.control_variate(row, output);
+        let shares = self.shares(variate.is_some());
         let mut replicates = Replicates::new(shares.len());
         for replicate in 0..REPLICATES {
             self.go_on()?;
             replicates.add(&mut self.values(row, output, replicate, fewer, own_error.is_some()), &shares);
         }
-        let (mut mean, deviation) = (replicates.mean(), replicates.deviation());
-        let quantiles = replicates.quantiles();
         let error = stated.total[row] + own_error.unwrap_or(0.0);
-        let mut errors = vec![error; 2 + asked.len()];
-        let mut resolved = !stated.unresolved[row] && error.is_finite();
-        if let Some(residual) = residual {
-            mean = residual.corrected(mean);
-            errors = residual.errors(&quantiles, error, stated.time);
-            let follows = residual.deviation <= TUNING.follows * deviation.value
-                || residual.largest[0] <= TUNING.rounding * mean.value.abs();
-            resolved = follows && errors.iter().all(|error| error.is_finite());
-        }
-        let with_error = |own: Estimate, error: f64| Uncertain { value: own.value, sampling: own.sampling, error };
+        let (moments, resolved) = match variate {
+            None => (Moments::of(&replicates, error), !stated.unresolved[row] && error.is_finite()),
+            Some(variate) => {
+                let moments = variate.corrected(&replicates, error, stated.time);
+                let are_known = moments.are_known();
+                (moments, are_known)
+            }
+        };
         let (linear, rss) = self.stack(row, output);
-        let asked = quantiles.into_iter().step_by(around);
-        Ok(RowStatistics {
-            mean: with_error(mean, errors[0]),
-            deviation: with_error(deviation, errors[1]),
-            quantiles: asked.zip(&errors[2..]).map(|(own, &error)| with_error(own, error)).collect(),
-            linear,
-            rss,
-            resolved,
-        })
+        Ok(RowStatistics { moments, linear, rss, resolved })
     }
 
-    /// The shares of the quantiles that are asked for, each with so many around it where errors are those of products.
-    pub fn shares(&self, of_products: bool) -> (usize, Vec<f64>) {
+    /// The shares of the quantiles that are asked for, each with some around it where errors are those of products.
+    pub fn shares(&self, of_products: bool) -> Vec<f64> {
         let asked = &self.description.statistics.quantiles;
-        match self.residuals.as_ref().filter(|_| of_products) {
-            Some(residuals) => (AROUND, asked.iter().flat_map(|&share| residuals.shares_around(share)).collect()),
-            None => (1, asked.clone()),
+        match self.products.as_ref().filter(|_| of_products) {
+            Some(products) => asked.iter().flat_map(|&share| products.shares_around(share)).collect(),
+            None => asked.clone(),
         }
     }
 
-    /// Differences of simulations from the surrogate, where the parameters are many.
-    fn residual(&self, row: usize, output: usize) -> Option<Residual> {
-        let residuals = self.residuals.as_ref()?;
-        let surrogate = self.evaluator.values(row, &[output], &residuals.samples);
-        residuals.from(row, output, &surrogate)
+    /// Simulated values of an output with its surrogate as control variate, where there are any.
+    fn control_variate(&self, row: usize, output: usize) -> Option<ControlVariate> {
+        let products = self.products.as_ref()?;
+        let surrogate = self.evaluator.values(row, &[output], &products.samples);
+        products.of_output(row, output, &surrogate)
     }
 
     /// An output's values in a row, enough of them for mean and deviation.

@@ -57,11 +57,6 @@ tuning! {
         /// The polynomial takes the closure's place if it differs by no more than the first, as a share of the values'
         /// range, or the second, as a share of the stated error.
         near_closure: (f64, f64) = (1e-4, 0.5), moves "statistics of outputs";
-        /// A surrogate does not follow the response if its differences from simulations vary by more than this share
-        /// of its own deviation.
-        follows: f64 = 0.5, moves "statistics of outputs";
-        /// Differences below this share of the mean are what least squares leave of a constant.
-        rounding: f64 = 1e-8, moves "statistics of outputs";
         /// A difference quotient's step, as a share of the interval's half width.
         step_of_difference: f64 = 1e-2, moves "statistics of outputs";
         /// Intervals of a histogram.

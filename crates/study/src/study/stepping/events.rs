@@ -105,7 +105,7 @@ fn may_be_cut(study: &Study) -> bool {
     may_extrapolate(study)
         && within
         && !methods.is_empty()
-        && !study.request.keep
+        && !study.request.keep.is_any()
         && study.stored.is_none()
         && opens_nothing(study)
 }
