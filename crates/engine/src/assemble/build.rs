@@ -304,7 +304,7 @@ impl<'g> Balance<'g> {
             m.kinetic_energy_of_flexible = m.energy_of_beams()? + m.energy_of_superelements()?;
         }
         let mut massive = depend_on(&inertia, &m.w);
-        let is_long = links.len() >= TUNING.links_without_mass_matrix && massive.iter().all(|&massive| massive);
+        let is_long = are_long(&links) && massive.iter().all(|&massive| massive);
         if mass.is_empty() && !is_long {
             mass = mass_matrix(&inertia, &m.w);
             massive.fill(false);
@@ -314,6 +314,18 @@ impl<'g> Balance<'g> {
         mass.sort_unstable_by_key(|&(row, column, _)| (row, column));
         Ok(Self { mass, massive, inertia, force, active_condition, conditional, links })
     }
+}
+
+/// Whether a link has so many others in its tree, on average, that M is left out.
+fn are_long(links: &[Link]) -> bool {
+    let mut roots: Vec<usize> = Vec::with_capacity(links.len());
+    let mut sizes = vec![0_usize; links.len()];
+    for (index, link) in links.iter().enumerate() {
+        roots.push(link.parent.map_or(index, |parent| roots[parent]));
+        sizes[roots[index]] += 1;
+    }
+    let pairs: usize = sizes.iter().map(|size| size * size).sum();
+    !links.is_empty() && pairs >= TUNING.links_without_mass_matrix * links.len()
 }
 
 fn add_all<'g>(totals: &mut [Scalar<'g>], parts: Vec<Scalar<'g>>) {

@@ -137,6 +137,9 @@ impl<'g> Mechanism<'g, '_> {
         if coordinate != Coordinate::Angle || !rotates {
             return None;
         }
+        if motion.parent == 0 {
+            return Some(InboardAngle { index: dof.index, rotation: *dof.rotation.first()?, parent: None });
+        }
         let guess: &[StartValue] = if named == Named::Guessed { &description.guess } else { &[] };
         let named = description.initial.iter().chain(guess).find_map(|value| match value {
             StartValue::Coordinate { body, coordinate: Coordinate::Angle, order: of, value } => {
@@ -144,11 +147,7 @@ impl<'g> Mechanism<'g, '_> {
             }
             _ => None,
         });
-        (named.is_some() || motion.parent == 0).then_some(InboardAngle {
-            index: dof.index,
-            rotation: *dof.rotation.first()?,
-            parent: named,
-        })
+        Some(InboardAngle { index: dof.index, rotation: *dof.rotation.first()?, parent: Some(named?) })
     }
 
     fn set_euler(&self, body: usize, values: Quaternion<'g>, found: &mut [Option<Scalar<'g>>]) {
