@@ -10,6 +10,7 @@ use crate::grammar::report::Fields;
 use crate::grammar::{Context, Symbol};
 use crate::keys;
 use crate::model::names::Reader;
+use crate::model::states::is_sampled;
 use crate::model::tuning::TUNING;
 use crate::syntax::codes::Code;
 use crate::syntax::source::Span;
@@ -236,13 +237,12 @@ fn follows_motion(reader: &Reader, joint: &Joint) -> bool {
 
 /// Reports speeds that jump at instants.
 pub fn check_speeds(reader: &mut Reader, entries: &[Entry]) {
-    let is_sampled = |name: &str| {
-        let effect = reader.model.effects.iter().find(|effect| effect.name == name);
-        effect.is_some_and(|effect| effect.kind.states().iter().any(|state| state.period.is_some()))
-    };
+    let sampled: Vec<&str> = reader.model.effects.iter().filter(|own| is_sampled(own)).map(|own| &*own.name).collect();
+    let with_speed: Vec<_> =
+        reader.model.joints.iter().filter_map(|own| Some((&own.name, own.kind.speed()?))).collect();
     let jumping = |entry: &Entry| {
-        let joint = reader.model.joints.iter().find(|joint| joint.name == entry.key)?;
-        let name = joint.kind.speed()?.names().find(|(name, _)| is_sampled(name))?.0;
+        let (_, speed) = with_speed.iter().find(|(joint, _)| **joint == entry.key)?;
+        let name = speed.names().find(|(name, _)| sampled.contains(name))?.0;
         Some((entry.key_span.clone(), name.to_owned()))
     };
     let found: Vec<(Span, String)> = entries.iter().filter_map(jumping).collect();

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
-use super::description::Analysis;
+use super::description::{Analysis, Effect};
 use super::effects;
 use super::names::Reader;
 use crate::elements::effects::{EffectKind, ForceElement, State};
@@ -123,10 +123,14 @@ fn circle<'n>(needs: &BTreeMap<&'n str, Vec<&'n str>>, first: &'n str) -> Option
 /// Reports states that change at too many instants.
 pub fn check_instants(reader: &mut Reader, effects: &[Entry]) {
     let duration = reader.model.simulation.duration;
+    let shortest = |effect: &Effect| {
+        let periods = effect.kind.states().into_iter().filter_map(|state| state.period);
+        let period = periods.reduce(f64::min).filter(|period| duration / period > TUNING.instants)?;
+        Some((effect.name.clone(), period))
+    };
+    let too_short: Vec<(String, f64)> = reader.model.effects.iter().filter_map(shortest).collect();
     for entry in effects {
-        let effect = reader.model.effects.iter().find(|effect| effect.name == entry.key);
-        let periods = effect.into_iter().flat_map(|effect| effect.kind.states()).filter_map(|state| state.period);
-        if let Some(period) = periods.reduce(f64::min).filter(|period| duration / period > TUNING.instants) {
+        if let Some(&(_, period)) = too_short.iter().find(|(name, _)| *name == entry.key) {
             let message =
                 format!("`{}` changes at {:.0e} instants in {duration} s: too many", entry.key, duration / period);
             let help =
@@ -136,14 +140,17 @@ pub fn check_instants(reader: &mut Reader, effects: &[Entry]) {
     }
 }
 
+/// Whether something of an effect changes at instants.
+pub fn is_sampled(effect: &Effect) -> bool {
+    effect.kind.states().iter().any(|state| state.period.is_some())
+}
+
 /// Reports states where nothing moves in time, and modes of what jumps.
 pub fn check(reader: &mut Reader, fields: &Fields, effects: &[Entry]) {
     let analysis = reader.model.analysis;
-    let is_sampled = |entry: &&Entry| {
-        let effect = reader.model.effects.iter().find(|effect| effect.name == entry.key);
-        effect.is_some_and(|effect| effect.kind.states().iter().any(|state| state.period.is_some()))
-    };
-    if let (Analysis::Modes(_), Some(entry)) = (analysis, effects.iter().find(is_sampled)) {
+    let sampled: Vec<&Effect> = reader.model.effects.iter().filter(|own| is_sampled(own)).collect();
+    let first = effects.iter().find(|entry| sampled.iter().any(|own| own.name == entry.key));
+    if let (Analysis::Modes(_), Some(entry)) = (analysis, first) {
         let message = format!("`{}` changes at instants, and modes are of what changes all the time", clip(&entry.key));
         let help = "write it as a state or a filter, its period as a `delay` of half of it; or leave it out here, e.g. in a scene with `without`";
         reader.error(Code::WrongAnalysis, entry.key_span.clone(), message, help.to_owned());

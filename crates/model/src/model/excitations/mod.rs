@@ -88,9 +88,9 @@ pub fn check_joints(reader: &mut Reader, entries: &[Entry]) {
     };
     let mut found = Vec::new();
     for joint in &reader.model.joints {
-        let excitation = joint.kind.formulas().into_iter().find_map(names_one);
+        let Some(excitation) = joint.kind.formulas().into_iter().find_map(names_one) else { continue };
         let entry = entries.iter().find(|entry| entry.key == joint.name);
-        found.extend(excitation.zip(entry).map(|(excitation, entry)| (entry.key_span.clone(), excitation)));
+        found.extend(entry.map(|entry| (entry.key_span.clone(), excitation)));
     }
     for (index, excitation) in found {
         let message =
