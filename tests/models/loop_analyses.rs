@@ -90,7 +90,7 @@ fn loops_vibrate_alike() {
     let text = "chebyshev: { order: 4 }";
     let bounds = FORMULATIONS.map(|formulation| {
         let mut description = within(four_bar("modes", text), formulation);
-        description.starts_at_equilibrium = true;
+        description.mechanism_mut().starts_at_equilibrium = true;
         run(&description)
     });
     let [absolute, joint] = [0, 1].map(|index: usize| value(&bounds[index], "mode1.frequency"));

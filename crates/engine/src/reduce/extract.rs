@@ -95,24 +95,25 @@ pub fn extract(
         Reference::Point(place) => *place = moved(*place).unwrap_or(PointRef { body: 0, point: None }),
         Reference::Joint(joint) => *joint = joints[*joint].unwrap_or(0),
     };
-    for (body, points) in part.bodies.iter_mut().zip(&kept.points) {
+    retain(&mut part.parameters, &kept.parameters);
+    let own = part.mechanism_mut();
+    for (body, points) in own.bodies.iter_mut().zip(&kept.points) {
         retain(&mut body.points, points);
     }
-    retain(&mut part.bodies, &kept.bodies);
-    for body in &mut part.bodies {
+    retain(&mut own.bodies, &kept.bodies);
+    for body in &mut own.bodies {
         body.standing =
             body.standing.and_then(|standing| Some(Standing { ground: bodies[standing.ground]?, ..standing }));
     }
-    retain(&mut part.joints, &kept.joints);
-    retain(&mut part.effects, &kept.effects);
-    retain(&mut part.parameters, &kept.parameters);
-    part.joints.iter_mut().flat_map(|joint| joint.kind.references()).for_each(follow);
-    part.effects.iter_mut().flat_map(|effect| effect.kind.references()).for_each(follow);
-    for values in [&mut part.initial, &mut part.guess] {
+    retain(&mut own.joints, &kept.joints);
+    retain(&mut own.effects, &kept.effects);
+    own.joints.iter_mut().flat_map(|joint| joint.kind.references()).for_each(follow);
+    own.effects.iter_mut().flat_map(|effect| effect.kind.references()).for_each(follow);
+    for values in [&mut own.initial, &mut own.guess] {
         values.retain(|value| kept.starts(value));
         values.iter_mut().map(StartValue::reference).for_each(follow);
     }
-    for link in part.robot.iter_mut().flat_map(|robot| &mut robot.links) {
+    for link in own.robot.iter_mut().flat_map(|robot| &mut robot.links) {
         link.place = link.place.and_then(moved);
     }
     let numbered = description.uncertain().enumerate();

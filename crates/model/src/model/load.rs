@@ -236,7 +236,7 @@ fn describe(
     definitions::note(&reader, root);
     reader.model.chains = origin.chains.clone();
     reader.model.zones = origin.zones.clone();
-    reader.model.instances = parts.map_or_else(Vec::new, |parts| parts.instances.clone());
+    reader.model.mechanism_mut().instances = parts.map_or_else(Vec::new, |parts| parts.instances.clone());
     let start = root.span.start..root.span.start;
     let Some(fields) = reader.fields::<keys::File>(root, start) else { return (reader.model, Vec::new()) };
     sections::title(&mut reader, &fields, variant.scene.as_deref());
@@ -249,7 +249,7 @@ fn describe(
             Some(robot)
         }
     };
-    reader.model.space = match &robot {
+    reader.model.mechanism_mut().space = match &robot {
         Some(_) => Space { spatial: true, why: "the robot is in space".to_owned() },
         None => space::read(&mut reader, &fields),
     };
@@ -290,8 +290,8 @@ fn describe(
     joints::read(&mut reader, joint_entries);
     effects::read(&mut reader, effect_entries);
     states::read(&mut reader, state_entries);
-    reader.model.initial = requests::start_values(&mut reader, initial_entries, true);
-    reader.model.guess = requests::start_values(&mut reader, guess_entries, false);
+    reader.model.mechanism_mut().initial = requests::start_values(&mut reader, initial_entries, true);
+    reader.model.mechanism_mut().guess = requests::start_values(&mut reader, guess_entries, false);
     let limits = fields.get("limits").map(|node| (node, fields.key_span("limits")));
     match &robot {
         Some(robot) => robot.finish(&mut reader, &variant.robot, limits, output_entries.is_empty()),

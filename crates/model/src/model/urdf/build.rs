@@ -40,7 +40,7 @@ pub fn declare(reader: &mut Reader, source: &Source) -> Built {
             None
         } else {
             let body = body(reader, source, &groups[index], &of_link);
-            reader.model.bodies.push(body);
+            reader.model.mechanism_mut().bodies.push(body);
             Some(reader.model.bodies.len() - 1)
         };
         let Some(body) = groups[index].body else { continue };
@@ -51,7 +51,7 @@ pub fn declare(reader: &mut Reader, source: &Source) -> Built {
                 continue;
             }
             let point = point(reader, robot.links[link].name.clone(), &of_link[link].1);
-            let points = &mut reader.model.bodies[body].points;
+            let points = &mut reader.model.mechanism_mut().bodies[body].points;
             points.push(point);
             frames[link] = Some(PointRef { body, point: Some(points.len() - 1) });
         }
@@ -65,7 +65,7 @@ pub fn declare(reader: &mut Reader, source: &Source) -> Built {
     for &index in &robot.order {
         mimic(reader, source, &built, index);
     }
-    reader.model.robot = Some(tree(source, &built));
+    reader.model.mechanism_mut().robot = Some(tree(source, &built));
     built
 }
 

@@ -144,7 +144,7 @@ pub fn add(reader: &mut Reader, source: &Source, effects: Vec<RobotEffect>, left
             check_range(reader, &effect.name, numbers[0].span.clone(), lower, upper);
         }
         acting.extend(numbers.iter().map(|number| number.name.as_str()));
-        reader.model.effects.push(effect);
+        reader.model.mechanism_mut().effects.push(effect);
     }
     // Numbers of bodies and frames are used by them; these by the effects kept.
     for number in source.robot.numbers().filter(|number| source.named.contains(&number.name)) {

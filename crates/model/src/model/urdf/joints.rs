@@ -25,7 +25,7 @@ pub fn joint(reader: &mut Reader, source: &Source, built: &Built, index: usize) 
         name.push_str("_joint");
     }
     let at = point(reader, name, &pose);
-    let points = &mut reader.model.bodies[parent].points;
+    let points = &mut reader.model.mechanism_mut().bodies[parent].points;
     points.push(at);
     let between = [PointRef { body: parent, point: Some(points.len() - 1) }, PointRef { body: child, point: None }];
     let axis = unit(joint.axis).map(Formula::number);
@@ -35,7 +35,7 @@ pub fn joint(reader: &mut Reader, source: &Source, built: &Built, index: usize) 
         UrdfJointType::Planar => Planar { between, normal: Direction(axis) }.into(),
         _ => Revolute { between, axis: Axis(axis) }.into(),
     };
-    reader.model.joints.push(Joint::new(joint.name.clone(), kind));
+    reader.model.mechanism_mut().joints.push(Joint::new(joint.name.clone(), kind));
     Some(reader.model.joints.len() - 1)
 }
 
@@ -68,5 +68,5 @@ pub fn mimic(reader: &mut Reader, source: &Source, built: &Built, index: usize) 
     while reader.model.joints.iter().any(|joint| joint.name == name) {
         name.push('_');
     }
-    reader.model.joints.push(Joint::new(name, kind));
+    reader.model.mechanism_mut().joints.push(Joint::new(name, kind));
 }

@@ -30,7 +30,11 @@ pub fn start(reader: &mut Reader, source: &Source, built: &Built) {
         }
         let rotation = Rotation::Quaternion(formulas(reader, &pose.rotation));
         values.push(StartValue::Orientation { body, rotation });
-        if kept { reader.model.initial.extend(values) } else { reader.model.guess.extend(values) }
+        if kept {
+            reader.model.mechanism_mut().initial.extend(values)
+        } else {
+            reader.model.mechanism_mut().guess.extend(values)
+        }
     };
     if let (true, Some(body)) = (source.floating, built.places[robot.root].0) {
         place(reader, body, &Pose::identity(), true);
@@ -47,7 +51,7 @@ pub fn start(reader: &mut Reader, source: &Source, built: &Built) {
             (_, Some(found), Some((coordinate, ..)), _) if joint.mimic.is_none() && !said.contains(&found) => {
                 let value = Formula::number(0.0);
                 let order = TimeOrder::Position;
-                reader.model.initial.push(StartValue::Joint { joint: found, coordinate, order, value });
+                reader.model.mechanism_mut().initial.push(StartValue::Joint { joint: found, coordinate, order, value });
             }
             _ => {}
         }

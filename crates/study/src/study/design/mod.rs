@@ -148,7 +148,7 @@ pub fn design(description: &Description, asked: DesignOptions, options: &Options
     };
     let pool = pool(options.threads);
     pool.map_err(RunError::from)?.install(|| {
-        let shown = required(&model);
+        let shown = required(model);
         let (at_instants, instants) = at_instants(&shown);
         let [model, at_instants] = [&shown, &at_instants].map(|own| reduced::expanded(own).into_owned());
         let goal = Goal::of(design);

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::data::Measured;
 use super::{FitError, Measurements};
 use crate::methods::Method;
-use crate::model::{Description, ParameterValue, Stepping};
+use crate::model::{Description, Stepping};
 use crate::numerics::Interpolation;
 use crate::numerics::ParameterBox;
 use crate::study::allocate::{raise, run_simulations};
@@ -61,19 +61,14 @@ impl Run {
         finer: Finer,
         options: &Options,
     ) -> Result<Self, FitError> {
-        let mut model = description.clone();
+        let mut model = description.over(domain.lower.iter().zip(&domain.upper).map(|(lower, upper)| [*lower, *upper]));
+        for [nominal, lower, upper] in model.intervals_mut() {
+            *nominal = nominal.clamp(*lower, *upper);
+        }
         let shorter = 0.5_f64.powi(finer.steps as i32);
         match &mut model.simulation.stepping {
             Stepping::Fixed(step) => *step *= shorter,
             Stepping::Tolerance(tolerance) => *tolerance *= shorter * shorter,
-        }
-        let mut axis = 0;
-        for parameter in &mut model.parameters {
-            if let ParameterValue::Interval { nominal, lower, upper } = &mut parameter.value {
-                (*lower, *upper) = (domain.lower[axis], domain.upper[axis]);
-                *nominal = nominal.clamp(*lower, *upper);
-                axis += 1;
-            }
         }
         let is_raised = (0..finer.orders).all(|_| raise(&mut model));
         let (_, summary, kept) =
