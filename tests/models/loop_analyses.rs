@@ -3,8 +3,8 @@
 
 use mbint::inner::methods::{Certified, Proof};
 use mbint::inner::model::{Description, Formulation, SchemeChoice};
-use mbint::inner::results::{Bounds, Method};
 use mbint::inner::study;
+use mbint::results::{Bounds, Method};
 
 use crate::common::{Vary, band, curve, distance, largest, model, nominal, output, read, richardson, run, run_methods};
 use crate::statics::{close, value};
@@ -90,7 +90,7 @@ fn loops_vibrate_alike() {
     let text = "chebyshev: { order: 4 }";
     let bounds = FORMULATIONS.map(|formulation| {
         let mut description = within(four_bar("modes", text), formulation);
-        description.starts_at_equilibrium = true;
+        description.mechanism_mut().starts_at_equilibrium = true;
         run(&description)
     });
     let [absolute, joint] = [0, 1].map(|index: usize| value(&bounds[index], "mode1.frequency"));

@@ -31,13 +31,13 @@ fn placed(d: &Description) -> Vec<bool> {
 
 /// Questions to a subsystem; indices refer to the whole model.
 #[derive(Default)]
-pub struct Asked {
+pub struct SubsystemQuestions {
     pub outputs: Vec<usize>,
     pub reduced: Vec<usize>,
     pub requirements: Vec<usize>,
 }
 
-impl Asked {
+impl SubsystemQuestions {
     /// An output alone.
     pub fn output(number: usize) -> Self {
         Self { outputs: vec![number], ..Self::default() }
@@ -75,7 +75,7 @@ pub fn extract(
     merged: &[bool],
     couplings: &mut Couplings,
     set: Option<usize>,
-    asked: Asked,
+    asked: SubsystemQuestions,
 ) -> Subsystem {
     let mut part = description.clone();
     asked.ask(&mut part);
@@ -95,24 +95,25 @@ pub fn extract(
         Reference::Point(place) => *place = moved(*place).unwrap_or(PointRef { body: 0, point: None }),
         Reference::Joint(joint) => *joint = joints[*joint].unwrap_or(0),
     };
-    for (body, points) in part.bodies.iter_mut().zip(&kept.points) {
+    retain(&mut part.parameters, &kept.parameters);
+    let own = part.mechanism_mut();
+    for (body, points) in own.bodies.iter_mut().zip(&kept.points) {
         retain(&mut body.points, points);
     }
-    retain(&mut part.bodies, &kept.bodies);
-    for body in &mut part.bodies {
+    retain(&mut own.bodies, &kept.bodies);
+    for body in &mut own.bodies {
         body.standing =
             body.standing.and_then(|standing| Some(Standing { ground: bodies[standing.ground]?, ..standing }));
     }
-    retain(&mut part.joints, &kept.joints);
-    retain(&mut part.effects, &kept.effects);
-    retain(&mut part.parameters, &kept.parameters);
-    part.joints.iter_mut().flat_map(|joint| joint.kind.references()).for_each(follow);
-    part.effects.iter_mut().flat_map(|effect| effect.kind.references()).for_each(follow);
-    for values in [&mut part.initial, &mut part.guess] {
+    retain(&mut own.joints, &kept.joints);
+    retain(&mut own.effects, &kept.effects);
+    own.joints.iter_mut().flat_map(|joint| joint.kind.references()).for_each(follow);
+    own.effects.iter_mut().flat_map(|effect| effect.kind.references()).for_each(follow);
+    for values in [&mut own.initial, &mut own.guess] {
         values.retain(|value| kept.starts(value));
         values.iter_mut().map(StartValue::reference).for_each(follow);
     }
-    for link in part.robot.iter_mut().flat_map(|robot| &mut robot.links) {
+    for link in own.robot.iter_mut().flat_map(|robot| &mut robot.links) {
         link.place = link.place.and_then(moved);
     }
     let numbered = description.uncertain().enumerate();
@@ -121,7 +122,7 @@ pub fn extract(
     narrow(&mut part, &left);
     let mut merged = merged.to_vec();
     retain(&mut merged, &kept.joints);
-    let Asked { outputs, reduced, requirements } = asked;
+    let SubsystemQuestions { outputs, reduced, requirements } = asked;
     Subsystem { description: part, merged, outputs, reduced, requirements, parameters: left }
 }
 
@@ -158,7 +159,13 @@ fn with_earlier(description: &Description, parameters: &mut [bool]) {
 }
 
 impl Kept {
-    fn of(d: &Description, couplings: &mut Couplings, set: Option<usize>, asked: &Asked, required: &[bool]) -> Self {
+    fn of(
+        d: &Description,
+        couplings: &mut Couplings,
+        set: Option<usize>,
+        asked: &SubsystemQuestions,
+        required: &[bool],
+    ) -> Self {
         let mut has = |part: Member| !couplings.is_grounded(part) && set.is_some_and(|set| couplings.set(part) == set);
         let mut bodies: Vec<bool> = (0..d.bodies.len()).map(|body| has(Member::Body(body))).collect();
         let mut joints: Vec<bool> = (0..d.joints.len()).map(|joint| has(Member::Joint(joint))).collect();

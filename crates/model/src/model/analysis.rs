@@ -46,7 +46,7 @@ pub fn read(reader: &mut Reader, fields: &Fields) {
     let at_equilibrium = matches!(analysis, Analysis::Statics | Analysis::Modes(LinearisedAt::Equilibrium));
     let initial = fields.get("initial").filter(|node| !node.is_null());
     let word = initial.and_then(Node::scalar);
-    reader.model.starts_at_equilibrium = at_equilibrium || word.is_some();
+    reader.model.mechanism_mut().starts_at_equilibrium = at_equilibrium || word.is_some();
     let Some(node) = initial else { return };
     match (word, &analysis) {
         (Some(word), Analysis::Kinematics) if word.text == EQUILIBRIUM => {

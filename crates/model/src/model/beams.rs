@@ -47,7 +47,7 @@ const OF_SPACE: [&str; 2] = ["bending_stiffness_y", "torsional_stiffness"];
 /// Reads a beam whose nodes were declared as the bodies from `first` on.
 pub fn read(reader: &mut Reader, entry: &Entry, first: usize, elements: usize) {
     let spatial = reader.model.space.spatial;
-    for node in &mut reader.model.bodies[first..=first + elements] {
+    for node in &mut reader.model.mechanism_mut().bodies[first..=first + elements] {
         node.coordinates = match spatial {
             true => [&[Coordinate::X, Coordinate::Y, Coordinate::Z], &Coordinate::ORIENTATION[..]].concat(),
             false => vec![Coordinate::X, Coordinate::Y, Coordinate::Angle],
@@ -111,7 +111,11 @@ pub fn read(reader: &mut Reader, entry: &Entry, first: usize, elements: usize) {
             damping: damping.clone(),
             flexible: Some(Flexible { body: entry.key.clone(), mass_per_length: mass.clone() }),
         };
-        reader.model.effects.push(Effect { name: format!("{}.element{}", entry.key, element + 1), kind: kind.into() });
+        reader
+            .model
+            .mechanism_mut()
+            .effects
+            .push(Effect { name: format!("{}.element{}", entry.key, element + 1), kind: kind.into() });
     }
 }
 

@@ -1,6 +1,7 @@
 //! `black_box:`, and what a model that has one cannot say.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use symdiff::Formula;
 use symdiff::formula::Term;
@@ -107,7 +108,7 @@ pub fn read(reader: &mut Reader, fields: &Fields, entries: &[Entry], model: &Pat
     let refine = fields.get("refine").and_then(|node| refine(reader, node, &fields));
     let (Some((program, outputs)), Some(protocol)) = (program, protocol) else { return };
     let points = points.or(is_json.then_some(1));
-    reader.model.black_box = Some(BlackBox {
+    reader.model.mechanism_mut().black_box = Some(BlackBox {
         place,
         program,
         outputs,
@@ -135,7 +136,8 @@ fn command_with_outputs(reader: &mut Reader, fields: &Fields, model: &Path) -> O
 
 /// The outputs of a model that names none of its own: all that the program answers with.
 pub fn all_outputs(model: &mut Description) {
-    let Some(own) = &model.black_box else { return };
+    let mechanism = Arc::clone(&model.mechanism);
+    let Some(own) = &mechanism.black_box else { return };
     let output = |own: &BoxOutput| {
         let dimension = own.unit.dimension();
         let formula = Formula::name(&own.name);

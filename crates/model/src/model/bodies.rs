@@ -44,12 +44,12 @@ pub fn declare(reader: &mut Reader, entries: &[Entry]) {
         standing: None,
         shapes: Vec::new(),
     };
-    reader.model.bodies.push(empty(GROUND));
+    reader.model.mechanism_mut().bodies.push(empty(GROUND));
     for entry in entries {
         reader.name(entry, "a body");
         if let Some(elements) = beams::elements(entry).filter(|_| entry.key != GROUND) {
-            reader.model.bodies.extend(beams::nodes(&entry.key, elements).map(|name| empty(&name)));
-            reader.model.beams.push(FlexibleBeam { name: entry.key.clone(), elements });
+            reader.model.mechanism_mut().bodies.extend(beams::nodes(&entry.key, elements).map(|name| empty(&name)));
+            reader.model.mechanism_mut().beams.push(FlexibleBeam { name: entry.key.clone(), elements });
             continue;
         }
         let mut body = empty(&entry.key);
@@ -62,9 +62,9 @@ pub fn declare(reader: &mut Reader, entries: &[Entry]) {
             body.points = points.iter().map(named).collect();
         }
         if entry.key == GROUND {
-            reader.model.bodies[0] = body;
+            reader.model.mechanism_mut().bodies[0] = body;
         } else {
-            reader.model.bodies.push(body);
+            reader.model.mechanism_mut().bodies.push(body);
         }
     }
 }
@@ -103,7 +103,7 @@ fn shapes(reader: &mut Reader, fields: &Fields, body: usize) {
     let at = fields.key_span("shape");
     let nodes = if let Value::Sequence(items) = &node.value { items.as_slice() } else { std::slice::from_ref(node) };
     let shapes: Vec<_> = nodes.iter().map(|node| ShapeKind::read(reader, node, at.clone())).collect();
-    reader.model.bodies[body].shapes = shapes.into_iter().flatten().collect();
+    reader.model.mechanism_mut().bodies[body].shapes = shapes.into_iter().flatten().collect();
 }
 
 fn body(reader: &mut Reader, entry: &Entry, index: usize) {
@@ -144,7 +144,7 @@ fn body(reader: &mut Reader, entry: &Entry, index: usize) {
     points(reader, &fields, index);
     shapes(reader, &fields, index);
 
-    let body = &mut reader.model.bodies[index];
+    let body = &mut reader.model.mechanism_mut().bodies[index];
     body.mass = mass;
     body.inertia = inertia;
     body.center_of_mass = center;
@@ -301,7 +301,7 @@ fn points(reader: &mut Reader, fields: &Fields, body: usize) {
     for (index, entry) in reader.named_entries(node, "points").iter().enumerate() {
         is_name_of_point(reader, entry);
         let Some((position, rotation)) = point(reader, entry) else { continue };
-        if let Some(point) = reader.model.bodies[body].points.get_mut(index) {
+        if let Some(point) = reader.model.mechanism_mut().bodies[body].points.get_mut(index) {
             point.position = position;
             point.rotation = rotation;
         }

@@ -5,37 +5,44 @@ mod black_box;
 mod body;
 mod design;
 mod index;
+mod mechanism;
 mod reduced;
 mod robot;
 mod simulation;
 mod start;
 mod statistics;
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
+use std::ops::Deref;
+use std::sync::Arc;
 
 use symdiff::Formula;
 
+use crate::elements::JointKind;
 use crate::elements::effects::EffectKind;
-use crate::elements::{JointKind, Trajectory};
-pub use crate::expand::dimensions::{Chain, Link};
+pub use crate::expand::dimensions::{Chain, ChainLink};
 pub use crate::expand::instance::{Instance, InstanceKind};
 pub use crate::expand::zones::{Zone, ZoneLaw, ZoneShape};
 use crate::grammar::display_unit::DisplayUnit;
 use crate::grammar::quantity::Dimension;
 use crate::methods::BoundsRequest;
-pub use crate::robots::urdf::robot::{Shape, Visual};
+pub use crate::robots::urdf::robot::{Visual, VisualShape};
 pub use analysis::{Analysis, LinearisedAt, ModesRequest, ResponseRequest};
 pub use black_box::{BlackBox, BoxOutput, FmuProgram, Program, Protocol, Refine};
 pub use body::{Body, FlexibleBeam, Inertia, Point, Standing};
 pub use design::{Design, Free, Objective};
 use index::NameIndex;
+pub use mechanism::DeclaredMechanism;
 pub use reduced::{Limit, ReducedKind, ReducedOutput, Requirement};
 pub use robot::{RobotTree, TreeJoint, TreeLink};
 pub use simulation::{Formulation, SchemeChoice, Simulation, Stepping};
 pub use start::StartValue;
 pub use statistics::{Correlation, Cost, Grade, Law, Statistics};
 
-/// A mechanism, its uncertain parameters and its questions.
+/// A mechanism, its parameters and its questions.
+///
+/// The reader of a file builds the mechanism once; copies with other questions or values of parameters share it. Its
+/// fields are read as those of the description; [`Description::mechanism_mut`] is the one way to change them.
 ///
 /// A `Description` is consistent: every index is in range, every formula's names resolve (through
 /// [`Description::symbol`]) in their context, every dimension agrees. Formulas give SI values.
@@ -45,32 +52,14 @@ pub struct Description {
     pub name: String,
     /// One line for people.
     pub description: Option<String>,
-    /// Whether the mechanism stays in the plane.
-    pub space: Space,
-    /// The tree of a URDF, where the model names one.
-    pub robot: Option<RobotTree>,
+    /// Bodies, joints, effects and their start.
+    pub mechanism: Arc<DeclaredMechanism>,
     /// In an order in which each depends only on earlier ones.
     pub parameters: Vec<Parameter>,
-    /// `bodies[0]` is the ground: no coordinates, no mass, perhaps points.
-    pub bodies: Vec<Body>,
-    /// Beams, of which the nodes are bodies and the elements effects.
-    pub beams: Vec<FlexibleBeam>,
-    /// In file order.
-    pub joints: Vec<Joint>,
-    /// In file order.
-    pub effects: Vec<Effect>,
     /// Analysis.
     pub analysis: Analysis,
-    /// The program that answers instead of a mechanism, if there is one.
-    pub black_box: Option<BlackBox>,
     /// Questions about small vibrations.
     pub modes: ModesRequest,
-    /// Whether the start is an equilibrium, near where assembly begins to look.
-    pub starts_at_equilibrium: bool,
-    /// Coordinates and velocities that are kept at the start, with their values.
-    pub initial: Vec<StartValue>,
-    /// Where assembly begins to look for the others.
-    pub guess: Vec<StartValue>,
     /// Outputs.
     pub outputs: Vec<Output>,
     /// Reduced outputs: one number a motion.
@@ -89,33 +78,12 @@ pub struct Description {
     pub bounds: BoundsRequest,
     /// Which statistics are asked for, and the parameters' laws.
     pub statistics: Statistics,
-    /// Instances of assemblies, and effects on many, of which the parts have dots in their names.
-    pub instances: Vec<Instance>,
-    /// Ports of instances: the body or the point that each is.
-    pub ports: BTreeMap<String, String>,
-    /// Effects of instances on joints that turn: their sensors along the joint have the other sign in a mirror.
-    pub turning_effects: BTreeSet<String>,
-    /// Effects that are states, or have some.
-    pub states: BTreeSet<String>,
-    /// Functions of the time by their points.
-    pub trajectories: Vec<Trajectory>,
     /// Chains of dimensions, with the outputs that close them.
     pub chains: Vec<Chain>,
     /// Zones, each of several parameters.
     pub zones: Vec<Zone>,
-    /// Where parameters, bodies and joints are by name.
-    pub places: Places,
-}
-
-/// Indices of named items.
-#[derive(Clone, Debug, Default)]
-pub struct Places {
-    /// Of parameters.
-    pub parameters: NameIndex,
-    /// Of bodies.
-    pub bodies: NameIndex,
-    /// Of joints.
-    pub joints: NameIndex,
+    /// Indices of parameters by name.
+    pub parameter_index: NameIndex,
 }
 
 /// In how many dimensions a mechanism moves.
@@ -202,25 +170,24 @@ pub struct Output {
     pub of_results: bool,
 }
 
+impl Deref for Description {
+    type Target = DeclaredMechanism;
+
+    fn deref(&self) -> &DeclaredMechanism {
+        &self.mechanism
+    }
+}
+
 impl Description {
     /// Nothing yet, in the plane, for a second.
     pub fn empty(name: String) -> Self {
         Self {
             name,
             description: None,
-            space: Space { spatial: false, why: String::new() },
-            robot: None,
+            mechanism: Arc::new(DeclaredMechanism::empty()),
             parameters: Vec::new(),
-            bodies: Vec::new(),
-            beams: Vec::new(),
-            joints: Vec::new(),
-            effects: Vec::new(),
             analysis: Analysis::Motion,
-            black_box: None,
             modes: ModesRequest::default(),
-            starts_at_equilibrium: false,
-            initial: Vec::new(),
-            guess: Vec::new(),
             outputs: Vec::new(),
             reduced: Vec::new(),
             requirements: Vec::new(),
@@ -238,15 +205,15 @@ impl Description {
             },
             bounds: BoundsRequest::default(),
             statistics: Statistics::default(),
-            instances: Vec::new(),
-            ports: BTreeMap::new(),
-            turning_effects: BTreeSet::new(),
-            states: BTreeSet::new(),
-            trajectories: Vec::new(),
             chains: Vec::new(),
             zones: Vec::new(),
-            places: Places::default(),
+            parameter_index: NameIndex::default(),
         }
+    }
+
+    /// The mechanism, to be changed: a copy of its own where others share it.
+    pub fn mechanism_mut(&mut self) -> &mut DeclaredMechanism {
+        Arc::make_mut(&mut self.mechanism)
     }
 
     /// The parameters that are known to lie in an interval, with their indices.
@@ -254,6 +221,26 @@ impl Description {
         let interval =
             |(_, parameter): &(usize, &Parameter)| matches!(parameter.value, ParameterValue::Interval { .. });
         self.parameters.iter().enumerate().filter(interval)
+    }
+
+    /// Intervals of the parameters, to be changed: nominal, least and largest value, SI, in the order of
+    /// [`Self::uncertain`].
+    pub fn intervals_mut(&mut self) -> impl Iterator<Item = [&mut f64; 3]> {
+        self.parameters.iter_mut().filter_map(|parameter| match &mut parameter.value {
+            ParameterValue::Interval { nominal, lower, upper } => Some([nominal, lower, upper]),
+            ParameterValue::Formula(_) => None,
+        })
+    }
+
+    /// The same mechanism and questions over another box: ends of the intervals, SI, in the order of
+    /// [`Self::uncertain`]. Nominal values stay.
+    #[must_use]
+    pub fn over(&self, ends: impl IntoIterator<Item = [f64; 2]>) -> Self {
+        let mut model = self.clone();
+        for ([_, lower, upper], ends) in model.intervals_mut().zip(ends) {
+            [*lower, *upper] = ends;
+        }
+        model
     }
 
     /// The reduced outputs that a formula names, with their indices.

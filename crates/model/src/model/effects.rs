@@ -18,7 +18,7 @@ pub fn read(reader: &mut Reader, entries: &[Entry]) {
 pub fn add(reader: &mut Reader, name: &str, kind: Option<EffectKind>) {
     let Some(kind) = kind else { return };
     if !kind.states().is_empty() {
-        reader.model.states.insert(name.to_owned());
+        reader.model.mechanism_mut().states.insert(name.to_owned());
     }
-    reader.model.effects.push(Effect { name: name.to_owned(), kind });
+    reader.model.mechanism_mut().effects.push(Effect { name: name.to_owned(), kind });
 }

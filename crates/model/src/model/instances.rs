@@ -14,7 +14,7 @@ pub fn declare_ports(reader: &mut Reader, parts: &Parts) {
     for port in &parts.ports {
         // A port may be one of an instance within.
         let target = reader.model.ports.get(&port.target).unwrap_or(&port.target).clone();
-        reader.model.ports.insert(port.name.clone(), target);
+        reader.model.mechanism_mut().ports.insert(port.name.clone(), target);
     }
     for port in &parts.ports {
         let target = reader.model.ports.get(&port.name).cloned().unwrap_or_default();
@@ -25,7 +25,7 @@ pub fn declare_ports(reader: &mut Reader, parts: &Parts) {
                 format!("port `{}` is no body and no point: there is no `{}`", clip(&port.name), clip(&target));
             let help = "write `body` or `body.point`, or `{ on: body, position: … }`".to_owned();
             reader.error(Code::UnknownName, port.span.clone(), message, help);
-            reader.model.ports.remove(&port.name);
+            reader.model.mechanism_mut().ports.remove(&port.name);
         }
     }
 }
@@ -33,14 +33,14 @@ pub fn declare_ports(reader: &mut Reader, parts: &Parts) {
 /// Gives the bodies, which are declared, the ground and the mirrors of their instances; notes effects on joints that
 /// turn.
 pub fn stand(reader: &mut Reader, parts: &Parts) {
-    reader.model.turning_effects.clone_from(&parts.turning_effects);
+    reader.model.mechanism_mut().turning_effects.clone_from(&parts.turning_effects);
     parts.inclined.iter().for_each(|inclined| check_level(reader, inclined));
     if parts.grounds.is_empty() {
         return;
     }
     let numbers: HashMap<String, usize> =
         reader.model.bodies.iter().enumerate().map(|(index, body)| (body.name.clone(), index)).collect();
-    for body in &mut reader.model.bodies {
+    for body in &mut reader.model.mechanism_mut().bodies {
         // The innermost instance around it.
         let mut ends = body.name.rmatch_indices('.').map(|(end, _)| &body.name[..=end]);
         let found = ends.find_map(|prefix| {

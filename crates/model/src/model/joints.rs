@@ -16,7 +16,7 @@ pub fn declare(reader: &mut Reader, entries: &[Entry]) {
         reader.name(entry, "a joint");
         // The kind is put in its place by `read`.
         let kind = Equation { left: Formula::number(0.0), right: Formula::number(0.0) };
-        reader.model.joints.push(Joint::new(entry.key.clone(), kind.into()));
+        reader.model.mechanism_mut().joints.push(Joint::new(entry.key.clone(), kind.into()));
     }
 }
 
@@ -29,7 +29,7 @@ pub fn read(reader: &mut Reader, entries: &[Entry]) {
     for coupling in [false, true] {
         for (index, entry) in entries.iter().enumerate().filter(|(_, entry)| couples(entry) == coupling) {
             match JointKind::read(reader, &entry.value, entry.key_span.clone()) {
-                Some(kind) => reader.model.joints[index].kind = kind,
+                Some(kind) => reader.model.mechanism_mut().joints[index].kind = kind,
                 None => reader.unread_joints.push(entry.key.clone()),
             }
         }

@@ -44,17 +44,17 @@ impl SymbolTable for Description {
 
     fn parameter(&self, name: &str) -> Option<usize> {
         let list = &self.parameters;
-        self.places.parameters.find(name, list.len(), |index| &list[index].name)
+        self.parameter_index.find(name, list.len(), |index| &list[index].name)
     }
 
     fn body(&self, name: &str) -> Option<usize> {
         let list = &self.bodies;
-        self.places.bodies.find(name, list.len(), |index| &list[index].name)
+        self.body_index.find(name, list.len(), |index| &list[index].name)
     }
 
     fn joint(&self, name: &str) -> Option<usize> {
         let list = &self.joints;
-        self.places.joints.find(name, list.len(), |index| &list[index].name)
+        self.joint_index.find(name, list.len(), |index| &list[index].name)
     }
 
     fn effects(&self) -> usize {

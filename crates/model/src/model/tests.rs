@@ -342,7 +342,7 @@ fn what_leaves_the_plane_makes_a_model_spatial() {
         ),
         (format!("space: spatial\n{}", in_bar("")), Some("the model says so")),
     ] {
-        let space = good(&text).space;
+        let space = good(&text).space.clone();
         assert_eq!(space.spatial, why.is_some(), "{text}");
         assert_eq!(space.why, why.unwrap_or("nothing leaves the plane"), "{text}");
     }

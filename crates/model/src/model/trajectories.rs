@@ -39,7 +39,7 @@ pub fn read(reader: &mut Reader, fields: &Fields) {
             continue;
         }
         let found = trajectory(reader, entry);
-        reader.model.trajectories.extend(found.filter(|_| named));
+        reader.model.mechanism_mut().trajectories.extend(found.filter(|_| named));
     }
 }
 

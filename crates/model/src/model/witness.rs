@@ -134,7 +134,7 @@ impl Witness {
             }
         }
         for (name, spline) in &self.functions {
-            let found = model.trajectories.iter_mut().find(|own| own.name == *name);
+            let found = model.mechanism_mut().trajectories.iter_mut().find(|own| own.name == *name);
             let own = found.filter(|own| own.excitation().is_some()).ok_or_else(|| unknown("excitation", name))?;
             own.timing = Timing::Given(Formula::name("t").applied(Unary::Spline(*spline, 0)));
             let deviation = deviation_of(name);

@@ -6,7 +6,7 @@ use crate::assemble::{self, System};
 use crate::elements::joints::Revolute;
 use crate::grammar::Axis;
 use crate::grammar::{Components, Direction};
-use crate::model::force::Frame;
+use crate::model::force::ForceFrame;
 use crate::model::torque::{AboutAxes, TorqueOn};
 use crate::model::*;
 
@@ -47,7 +47,7 @@ impl Model {
     /// Only the ground, in space.
     pub fn spatial() -> Self {
         let mut model = Self::new();
-        model.0.space.spatial = true;
+        model.0.mechanism_mut().space.spatial = true;
         model
     }
 
@@ -66,7 +66,7 @@ impl Model {
         let point =
             |&(name, x, y): &(&str, &str, &str)| Point { name: name.to_owned(), position: pair(x, y), rotation: None };
         let points = points.iter().map(point).collect();
-        self.0.bodies.push(Body {
+        self.0.mechanism_mut().bodies.push(Body {
             name: name.to_owned(),
             mass: Some(formula(mass)),
             inertia: Some(Inertia::scalar(&formula(inertia))),
@@ -84,7 +84,7 @@ impl Model {
     pub fn lump(&mut self, name: &str) {
         self.body(name, "2", "1", "xyzo", &[]);
         let [xx, yy, zz, xy, xz, yz] = ["0.4", "0.5", "0.7", "0.05", "-0.1", "0.08"].map(formula);
-        let body = self.0.bodies.last_mut().unwrap();
+        let body = self.0.mechanism_mut().bodies.last_mut().unwrap();
         body.inertia = Some(Inertia { xx, yy, zz, xy, xz, yz });
         body.center_of_mass = Some(vector(["0.1", "-0.2", "0.3"]));
     }
@@ -92,21 +92,25 @@ impl Model {
     /// A point of the last body.
     pub fn frame(&mut self, name: &str, position: [&str; 3], rotation: Option<Rotation>) {
         let point = Point { name: name.to_owned(), position: vector(position), rotation };
-        self.0.bodies.last_mut().unwrap().points.push(point);
+        self.0.mechanism_mut().bodies.last_mut().unwrap().points.push(point);
     }
 
     pub fn ground_point(&mut self, name: &str, x: &str, y: &str) {
-        self.0.bodies[0].points.push(Point { name: name.to_owned(), position: pair(x, y), rotation: None });
+        self.0.mechanism_mut().bodies[0].points.push(Point {
+            name: name.to_owned(),
+            position: pair(x, y),
+            rotation: None,
+        });
     }
 
     /// Of the last body.
     pub fn center_of_mass(&mut self, x: &str, y: &str) {
-        self.0.bodies.last_mut().unwrap().center_of_mass = Some(pair(x, y));
+        self.0.mechanism_mut().bodies.last_mut().unwrap().center_of_mass = Some(pair(x, y));
     }
 
     /// A coordinate of the last body.
     pub fn hold(&mut self, letter: char, value: &str) {
-        self.0.bodies.last_mut().unwrap().prescribed.push((coordinates(letter)[0], formula(value)));
+        self.0.mechanism_mut().bodies.last_mut().unwrap().prescribed.push((coordinates(letter)[0], formula(value)));
     }
 
     pub fn body_index(&self, name: &str) -> usize {
@@ -126,7 +130,7 @@ impl Model {
     }
 
     pub fn joint(&mut self, name: &str, kind: JointKind) {
-        self.0.joints.push(Joint::new(name.to_owned(), kind));
+        self.0.mechanism_mut().joints.push(Joint::new(name.to_owned(), kind));
     }
 
     pub fn revolute(&mut self, name: &str, first: &str, second: &str) {
@@ -135,7 +139,8 @@ impl Model {
     }
 
     pub fn effect(&mut self, kind: impl Into<EffectKind>) {
-        self.0.effects.push(Effect { name: format!("effect{}", self.0.effects.len()), kind: kind.into() });
+        let effects = &mut self.0.mechanism_mut().effects;
+        effects.push(Effect { name: format!("effect{}", effects.len()), kind: kind.into() });
     }
 
     pub fn gravity(&mut self) {
@@ -144,7 +149,7 @@ impl Model {
 
     pub fn initial(&mut self, body: &str, letter: char, order: TimeOrder, value: &str) {
         let (body, coordinate) = (self.body_index(body), coordinates(letter)[0]);
-        self.0.initial.push(StartValue::Coordinate { body, coordinate, order, value: formula(value) });
+        self.0.mechanism_mut().initial.push(StartValue::Coordinate { body, coordinate, order, value: formula(value) });
     }
 
     pub fn output(&mut self, text: &str) {
@@ -178,7 +183,7 @@ pub fn slider_crank() -> Model {
     m.revolute("pin", "crank.B", "rod.B");
     m.revolute("wrist", "rod.C", "slider");
     let value = AboutAxes(vector(["0", "0", "tau"]));
-    m.effect(Torque { on: TorqueOn::Body(1), from: None, value, frame: Frame::Ground });
+    m.effect(Torque { on: TorqueOn::Body(1), from: None, value, frame: ForceFrame::Ground });
     let spring = SpringDamper {
         between: m.between("ground", "slider"),
         along: Some(Direction(pair("1", "0"))),

@@ -20,10 +20,10 @@ fn link(m: &mut Model, name: &str, length: &str) {
 fn what_is_kept_is_kept() {
     let mut m = slider_crank();
     m.initial("rod", 'x', TimeOrder::Position, "2*l1");
-    let mut guess = m.0.initial.pop().unwrap();
+    let mut guess = m.0.mechanism_mut().initial.pop().unwrap();
     let StartValue::Coordinate { value, .. } = &mut guess else { panic!("a coordinate") };
     *value = formula("0.6");
-    m.0.guess.push(guess);
+    m.0.mechanism_mut().guess.push(guess);
     let system = m.build();
     let kept: Vec<usize> = (0..7).filter(|&row| system.start.position[row].is_some()).collect();
     assert_eq!(kept, [2]);

@@ -12,6 +12,7 @@ mod run;
 mod switch_extents;
 mod tiling;
 pub(crate) mod tuning;
+mod watches;
 
 pub(crate) use extrapolated::weights;
 pub use extrapolated::{ExtrapolatedJets, ExtrapolatedRun};
@@ -20,7 +21,7 @@ pub(in crate::simulate) use jet_states::corrections;
 pub use jets::JetRun;
 pub(in crate::simulate) use observed::stops_of_lost;
 pub use observed::{Observed, Stop};
-pub(in crate::simulate) use reduction::Reduction;
+pub(in crate::simulate) use reduction::Accumulator;
 pub use reduction::{Accumulation, Channel};
 pub(crate) use row_closure::Needs;
 pub(in crate::simulate) use row_closure::{JetClosure, RowClosure};

@@ -16,7 +16,7 @@ use crate::syntax::codes::Code;
 /// Completes classes that depend on the duration.
 pub fn check_limits(reader: &mut Reader, fields: &Fields) {
     let duration = reader.model.simulation.duration;
-    for own in &mut reader.model.trajectories {
+    for own in &mut reader.model.mechanism_mut().trajectories {
         if let Timing::Within(excitation) = &mut own.timing {
             set_constant(&mut excitation.class, duration);
         }

@@ -46,7 +46,7 @@ pub fn read(reader: &mut Reader, fields: &Fields) {
         if found.excitation().is_some() {
             add_deviation(reader, &entry.key);
         }
-        reader.model.trajectories.push(found);
+        reader.model.mechanism_mut().trajectories.push(found);
     }
 }
 

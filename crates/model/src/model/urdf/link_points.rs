@@ -2,7 +2,7 @@
 
 use symdiff::{Binary, Formula};
 
-use super::Declared;
+use super::DeclaredRobot;
 use super::source::{Built, formula, formulas};
 use crate::grammar::{PointRef, Rotation};
 use crate::keys;
@@ -35,7 +35,7 @@ pub fn declare(reader: &mut Reader, built: &Built, of_links: &[(usize, &Entry)])
         let Some(place) = built.frames[link] else { continue };
         for point in entries(entry) {
             let name = name_of(&entry.key, place, &point.key);
-            let points = &mut reader.model.bodies[place.body].points;
+            let points = &mut reader.model.mechanism_mut().bodies[place.body].points;
             if points.iter().any(|known| known.name == name) {
                 let message = format!("`{}` has a point or a link called `{}` already", entry.key, point.key);
                 reader.error(Code::NameTaken, point.key_span.clone(), message, None);
@@ -46,7 +46,7 @@ pub fn declare(reader: &mut Reader, built: &Built, of_links: &[(usize, &Entry)])
     }
 }
 
-impl Declared {
+impl DeclaredRobot {
     /// Reads the points of links, once parameters are known.
     pub fn read_points(&self, reader: &mut Reader) {
         for (link, entry) in self.urdf.entries_of_links() {
@@ -95,7 +95,7 @@ impl Declared {
                 }
             };
             let name = name_of(&entry.key, place, &point.key);
-            let points = &mut reader.model.bodies[place.body].points;
+            let points = &mut reader.model.mechanism_mut().bodies[place.body].points;
             if let Some(known) = points.iter_mut().find(|known| known.name == name) {
                 known.position = position;
                 known.rotation = rotation;

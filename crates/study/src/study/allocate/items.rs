@@ -124,14 +124,9 @@ fn follows_tolerance(law: &Law, nominal: f64) -> bool {
 
 /// The model with these multiples of its tolerances, and laws that follow.
 pub fn with_tolerances(description: &Description, items: &[Item], multiples: &[f64]) -> Description {
-    let mut model = description.clone();
-    let uncertain = model.parameters.iter_mut().filter_map(|parameter| match &mut parameter.value {
-        ParameterValue::Interval { lower, upper, .. } => Some((lower, upper)),
-        ParameterValue::Formula(_) => None,
-    });
-    for ((lower, upper), (item, multiple)) in uncertain.zip(items.iter().zip(multiples)) {
-        (*lower, *upper) = (item.nominal - multiple * item.below, item.nominal + multiple * item.above);
-    }
+    let ends =
+        |item: &Item, multiple: f64| [item.nominal - multiple * item.below, item.nominal + multiple * item.above];
+    let mut model = description.over(items.iter().zip(multiples).map(|(item, multiple)| ends(item, *multiple)));
     for (name, law) in &mut model.statistics.laws {
         if let Some(index) = items.iter().position(|item| item.name == *name) {
             scale(law, items[index].nominal, multiples[index]);

@@ -3,23 +3,21 @@
 use symdiff::{Binary, Formula};
 
 use super::axes::Axes;
-use super::points::{Studied, studied};
+use super::points::{StudiedPoint, studied};
 use super::search;
-use super::surface::{Surface, scale};
+use super::surface::{DesignSurface, scale};
 use super::tuning::TUNING;
 use super::{DesignError, Question};
 use crate::model::Description;
 use crate::results::{Allocation, DesignKind};
 use crate::study::{AllocateError, AllocateOptions, Options, allocate};
 
-/// The model whose requirements are to leave this margin, as a share of their limits.
-fn with_margin(description: &Description, margin: f64) -> Description {
-    let mut model = description.clone();
+/// Has the requirements leave this margin, as a share of their limits.
+fn require_margin(model: &mut Description, margin: f64) {
     for own in &mut model.requirements {
         let less = Formula::number(margin * scale(own));
         own.slacks.iter_mut().for_each(|slack| *slack = slack.combined(Binary::Sub, &less));
     }
-    model
 }
 
 /// The cheapest tolerances at nominal values, as a study confirms them; `None` where none may change.
@@ -30,9 +28,10 @@ pub fn allocated(
     options: &Options,
 ) -> Result<Option<Allocation>, DesignError> {
     let asked = AllocateOptions { share: question.share, widest: TUNING.widest };
-    let mut model = with_margin(&question.shown, question.goal.margin());
+    let mut model = axes.at(&question.shown, &axes.with_present(point));
+    require_margin(&mut model, question.goal.margin());
     model.requirements.truncate(question.required());
-    match allocate(&axes.at(&model, &axes.with_present(point)), asked, options) {
+    match allocate(&model, asked, options) {
         Ok(allocation) => Ok(Some(allocation)),
         Err(AllocateError::Unsuitable(_)) => Ok(None),
         Err(AllocateError::Run(error)) => Err(error.into()),
@@ -46,7 +45,7 @@ pub fn at_cost(
     point: &[f64],
     kind: DesignKind,
     options: &Options,
-) -> Result<Option<Studied>, DesignError> {
+) -> Result<Option<StudiedPoint>, DesignError> {
     let allocation = allocated(question, axes, point, options)?;
     let met = allocation.as_ref().filter(|own| own.not_met.is_empty());
     let point = met.map_or_else(|| point.to_vec(), |own| axes.with_tolerances(point, &own.tolerances));
@@ -66,9 +65,9 @@ pub fn confirmed(
     question: &Question,
     axes: &Axes,
     point: Vec<f64>,
-    surface: &Surface,
+    surface: &DesignSurface,
     options: &Options,
-) -> Result<Option<Studied>, DesignError> {
+) -> Result<Option<StudiedPoint>, DesignError> {
     let mut assessed = question.assessed(surface)?;
     // What a rounded point misses is made up for by tighter tolerances.
     let rounded = axes.rounded(&point).into_iter().map(|own| assessed.restored(own)).collect();

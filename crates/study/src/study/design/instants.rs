@@ -12,16 +12,15 @@ use super::tuning::TUNING;
 use crate::model::{Analysis, Description, Requirement};
 
 /// The model with nothing but what its requirements are of.
-pub fn required(description: &Description) -> Description {
-    let mut model = description.clone();
+pub fn required(mut model: Description) -> Description {
+    let requirements = &model.requirements;
     let is_named = |name: &str| {
-        let slacks = description.requirements.iter().filter(|own| own.times.is_none()).flat_map(|own| &own.slacks);
+        let slacks = requirements.iter().filter(|own| own.times.is_none()).flat_map(|own| &own.slacks);
         slacks.flat_map(Formula::names).any(|(own, _)| own == name)
     };
     model.reduced.retain(|own| is_named(&own.name));
-    let of_results =
-        description.requirements.iter().any(|own| own.of_results) || model.reduced.iter().any(|own| own.of_results);
-    if !of_results && description.black_box.is_none() {
+    let of_results = requirements.iter().any(|own| own.of_results) || model.reduced.iter().any(|own| own.of_results);
+    if !of_results && model.black_box.is_none() {
         model.outputs.clear();
         model.chains.clear();
     }

@@ -63,7 +63,7 @@ pub fn effect_costs(questions: &Questions, simulator: &Simulator) -> Vec<Option<
     }
     let cost = |effect: usize| {
         let mut rest = description.clone();
-        rest.effects.remove(effect);
+        rest.mechanism_mut().effects.remove(effect);
         let is_known = |output: &&Output| output.formula.names().all(|(name, _)| rest.symbol(name).is_some());
         let outputs = questions.outputs.iter().filter(is_known).cloned().collect();
         let of_rest = Questions { description: &rest, outputs, ..as_chosen(questions, simulator) };
@@ -129,7 +129,7 @@ mod tests {
             let (keyword, keys) = (docs.keyword, docs.example);
             let with = example(Some((keyword, keys)));
             let mut without = with.clone();
-            without.effects.clear();
+            without.mechanism_mut().effects.clear();
             let without = prepare_whole(&without).unwrap();
             assert_eq!(counts(&without), counts(&bare), "{keyword}");
             let with_it = prepare_whole(&with).unwrap();

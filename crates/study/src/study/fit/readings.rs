@@ -5,14 +5,14 @@ use std::collections::BTreeMap;
 use super::data::Measured;
 use super::{FitError, Measurements};
 use crate::methods::Method;
-use crate::model::{Description, ParameterValue, Stepping};
+use crate::model::{Description, Stepping};
 use crate::numerics::Interpolation;
 use crate::numerics::ParameterBox;
 use crate::study::allocate::{raise, run_simulations};
 use crate::study::{Evaluator, Kept, Options, run_keeping};
 
 /// Surrogates over a box of the parameters.
-pub struct Run {
+pub struct SurrogateRun {
     kept: Kept,
     /// Their box, in the parameters' units.
     pub domain: ParameterBox,
@@ -43,14 +43,14 @@ struct Reading {
 }
 
 /// Values at samples.
-pub struct Values {
+pub struct ReadValues {
     /// By measured row, then sample.
     pub values: Vec<Vec<f64>>,
     /// By measured row: the largest difference of both interpolations in time.
     pub interpolation: Vec<f64>,
 }
 
-impl Run {
+impl SurrogateRun {
     /// Over a box within the model's.
     ///
     /// # Errors
@@ -61,19 +61,14 @@ impl Run {
         finer: Finer,
         options: &Options,
     ) -> Result<Self, FitError> {
-        let mut model = description.clone();
+        let mut model = description.over(domain.lower.iter().zip(&domain.upper).map(|(lower, upper)| [*lower, *upper]));
+        for [nominal, lower, upper] in model.intervals_mut() {
+            *nominal = nominal.clamp(*lower, *upper);
+        }
         let shorter = 0.5_f64.powi(finer.steps as i32);
         match &mut model.simulation.stepping {
             Stepping::Fixed(step) => *step *= shorter,
             Stepping::Tolerance(tolerance) => *tolerance *= shorter * shorter,
-        }
-        let mut axis = 0;
-        for parameter in &mut model.parameters {
-            if let ParameterValue::Interval { nominal, lower, upper } = &mut parameter.value {
-                (*lower, *upper) = (domain.lower[axis], domain.upper[axis]);
-                *nominal = nominal.clamp(*lower, *upper);
-                axis += 1;
-            }
         }
         let is_raised = (0..finer.orders).all(|_| raise(&mut model));
         let (_, summary, kept) =
@@ -140,7 +135,7 @@ impl Readings<'_> {
     }
 
     /// Values at samples (values of all parameters in their units); NaN where one is not known.
-    pub fn at(&self, samples: &[Vec<f64>]) -> Values {
+    pub fn at(&self, samples: &[Vec<f64>]) -> ReadValues {
         let mut wanted: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
         for reading in &self.rows {
             let fine = reading.interpolation.iter().flat_map(|own| &own.fine);
@@ -180,6 +175,6 @@ impl Readings<'_> {
             }
         };
         let (values, interpolation) = self.rows.iter().map(of).unzip();
-        Values { values, interpolation }
+        ReadValues { values, interpolation }
     }
 }

@@ -3,7 +3,7 @@
 use super::tuning::TUNING;
 use super::zones::LawInZone;
 use super::{intervals, law_summary};
-use crate::model::{Description, Law, ParameterValue};
+use crate::model::{Description, Law};
 use crate::numerics::statistics::{Copula, Distribution, Quantiles, normal_quantile, replicate};
 use crate::results::LawSummary;
 use symdiff::math;
@@ -82,20 +82,16 @@ impl Laws {
         self.outside() > 0.0
     }
 
-    /// The model over a box that has nearly all of the laws; samples are drawn from it then.
-    pub fn widened(&mut self, description: &Description) -> Description {
+    /// Has samples drawn from a box that has nearly all of the laws.
+    pub fn widen(&mut self) {
         for (index, law) in self.laws.iter().enumerate() {
             (self.least[index], self.most[index]) = ends(law, (self.lower[index], self.upper[index]));
         }
-        let mut wider = description.clone();
-        let uncertain = wider.parameters.iter_mut().filter_map(|parameter| match &mut parameter.value {
-            ParameterValue::Interval { lower, upper, .. } => Some((lower, upper)),
-            ParameterValue::Formula(_) => None,
-        });
-        for ((lower, upper), (least, most)) in uncertain.zip(self.least.iter().zip(&self.most)) {
-            (*lower, *upper) = (*least, *most);
-        }
-        wider
+    }
+
+    /// The box that samples are drawn from: ends of each parameter.
+    pub fn drawn(&self) -> impl Iterator<Item = [f64; 2]> {
+        self.least.iter().zip(&self.most).map(|(least, most)| [*least, *most])
     }
 
     /// Cuts off normal and lognormal laws at the box' ends.

@@ -65,7 +65,8 @@ fn of_run(
     let mut wide = None;
     let mut note = None;
     if laws.reach_beyond() {
-        let wider = laws.widened(description);
+        laws.widen();
+        let wider = description.over(laws.drawn());
         let methods = Some(vec![Method::Chebyshev]);
         let options = Options { methods, threads: options.threads, ..quiet(options) };
         match subsystems::run(&wider, &options, Keep::Statistics) {
@@ -161,7 +162,7 @@ fn side_by_side(
 /// Where nothing is uncertain.
 pub(super) fn laws(description: &Description) -> Result<Laws, String> {
     let mut laws = Laws::of(description)?;
-    laws.widened(description);
+    laws.widen();
     Ok(laws)
 }
 

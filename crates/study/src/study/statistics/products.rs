@@ -11,7 +11,7 @@ use crate::numerics::Sample;
 use crate::numerics::statistics::{REPLICATES, beta_quantile};
 use crate::study::answers::Kept;
 use crate::study::attained::tuning::TUNING as ATTAINED;
-use crate::study::sample::{Chosen, sample};
+use crate::study::sample::{ChosenSamples, sample};
 use crate::study::{Options, RunError};
 
 /// Each interval of a quantile, by differences and by simulated values alone, leaves so much out: 5 % together.
@@ -54,7 +54,7 @@ impl Products {
         let samples: Vec<Sample> =
             own.chunks_exact(laws.dimension()).map(|own| own.iter().copied().collect()).collect();
         let at = |indices: std::ops::Range<usize>| samples[indices].to_vec();
-        let chosen = Chosen { count: samples.len(), at: &at };
+        let chosen = ChosenSamples { count: samples.len(), at: &at };
         let options = Options { threads: options.threads, interrupted: options.interrupted, ..Options::default() };
         let found = sample(description, &options, chosen, |trajectories| {
             let (rows, columns) = (trajectories.times.len(), trajectories.outputs.len());

@@ -45,7 +45,8 @@ pub(super) fn of_motions(
     let (count, seed) = (asked.samples.unwrap_or(TUNING.samples_of_random), asked.seed);
     let model = varied(description);
     let mut laws = Laws::of(&model)?;
-    let model = laws.widened(&model);
+    laws.widen();
+    let model = model.over(laws.drawn());
     let simulation = &description.simulation;
     let numbers = simulation.duration / simulation.output_step * (count * description.outputs.len()) as f64;
     if numbers > TUNING.most_numbers_of_random as f64 {
