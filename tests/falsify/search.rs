@@ -17,6 +17,9 @@ const DRAWN: usize = 1500;
 /// Share of their coordinates that are at an end of the parameter's interval.
 const AT_ENDS: f64 = 0.25;
 
+/// Share of the width by which a polynomial through integrated motions may miss one where these are smooth.
+const SMOOTH: f64 = 1e-5;
+
 /// Most stages of a local search, and its smallest step, in cells.
 const STAGES: usize = 60;
 const FINEST: f64 = 1e-8;
@@ -223,13 +226,17 @@ impl<'t> Grid<'t> {
         // A polynomial overshoots beside kinks: its promise counts as far as the motion there attains it.
         let moved = |place: &[f64]| sign * (self.term.curves)(&self.at(place), &[0.0, time])[channel][1];
         let mut best = candidates.first().map_or(f64::NEG_INFINITY, |&sample| value(sample));
+        let least = (0..self.values.len()).map(value).fold(best, f64::min);
+        let mut has_kinks = false;
         for (promised, place) in climbed(&|place, sample| sign * self.interpolated(sample, place, channel, row)) {
             if promised <= best {
                 break;
             }
-            best = best.max(moved(&place));
+            let attained = moved(&place);
+            has_kinks |= (promised - attained).abs() > SMOOTH * (best - least);
+            best = best.max(attained);
         }
-        if self.level > 0 {
+        if has_kinks && self.level > 0 {
             // Nor does it follow them: where a band seems to be missed, motions are integrated on the way.
             for &sample in candidates.iter().take(DRAWN_ABOUT) {
                 best = best.max(climb(&self.place(sample), self.points, value(sample), &moved).0);
