@@ -14,6 +14,12 @@ const CANDIDATES: usize = 6;
 const DRAWN_ABOUT: usize = 2;
 const DRAWN: usize = 1500;
 
+/// Share of their coordinates that are at an end of the parameter's interval.
+const AT_ENDS: f64 = 0.25;
+
+/// Share of the width by which a polynomial through integrated motions may miss one where these are smooth.
+const SMOOTH: f64 = 1e-5;
+
 /// Most stages of a local search, and its smallest step, in cells.
 const STAGES: usize = 60;
 const FINEST: f64 = 1e-8;
@@ -93,14 +99,19 @@ fn climb(start: &[f64], points: usize, known: f64, f: &dyn Fn(&[f64]) -> f64) ->
 
 /// The greatest value that is found about a place, a quarter of the box each way and then ever nearer to the best so
 /// far, at points that are drawn at random: on a ridge with a kink, where a contact begins or ends, no direction leads
-/// a climb on, and its end is many cells away.
+/// a climb on, and its end is many cells away. Mostly it is where some parameter is at an end of its interval.
 fn narrowed(known: f64, place: &[f64], points: usize, f: &dyn Fn(&[f64]) -> f64) -> f64 {
     let (mut random, mut best, mut at) = (Random::new(1, 0), known, place.to_vec());
     let mut reach = 0.25 * points as f64;
     while reach > FINEST {
         let centre = at.clone();
         for _ in 0..DRAWN {
-            let near = |middle: &f64| (middle + reach * (2.0 * random.unit() - 1.0)).clamp(0.0, (points - 1) as f64);
+            let near = |middle: &f64| {
+                let (end, moved) = (random.chance(0.5), middle + reach * (2.0 * random.unit() - 1.0));
+                let last = (points - 1) as f64;
+                let at_end = if end { last } else { 0.0 };
+                if random.chance(AT_ENDS) { at_end } else { moved.clamp(0.0, last) }
+            };
             let next: Vec<f64> = centre.iter().map(near).collect();
             let value = f(&next);
             if value > best {
@@ -215,11 +226,21 @@ impl<'t> Grid<'t> {
         // A polynomial overshoots beside kinks: its promise counts as far as the motion there attains it.
         let moved = |place: &[f64]| sign * (self.term.curves)(&self.at(place), &[0.0, time])[channel][1];
         let mut best = candidates.first().map_or(f64::NEG_INFINITY, |&sample| value(sample));
+        let least = (0..self.values.len()).map(value).fold(best, f64::min);
+        let mut has_kinks = false;
         for (promised, place) in climbed(&|place, sample| sign * self.interpolated(sample, place, channel, row)) {
             if promised <= best {
                 break;
             }
-            best = best.max(moved(&place));
+            let attained = moved(&place);
+            has_kinks |= (promised - attained).abs() > SMOOTH * (best - least);
+            best = best.max(attained);
+        }
+        if has_kinks && self.level > 0 {
+            // Nor does it follow them: where a band seems to be missed, motions are integrated on the way.
+            for &sample in candidates.iter().take(DRAWN_ABOUT) {
+                best = best.max(climb(&self.place(sample), self.points, value(sample), &moved).0);
+            }
         }
         best
     }

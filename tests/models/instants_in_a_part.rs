@@ -23,6 +23,13 @@ fn check(found: &ReducedSummary, [lower, upper]: [f64; 2], error: f64) {
     assert!(0 < occurs.samples && occurs.samples < occurs.of, "{occurs:?}");
 }
 
+/// The share of the box in which it occurs is this.
+#[track_caller]
+fn check_share(found: &ReducedSummary, share: f64) {
+    let [least, most] = found.occurs.as_ref().unwrap().share.unwrap();
+    assert!(least <= share && share <= most && most - least < 5e-3, "{least} to {most}, not {share}");
+}
+
 const G: f64 = 9.81;
 
 /// A ball that is thrown at `speed` ± `tolerance`, under a ceiling at 1.3 m.
@@ -50,6 +57,7 @@ fn a_ceiling_is_reached_at_some_speeds() {
     for (speed, tolerance) in [(5.0, 0.5), (5.02, 0.1), (5.1, 0.2)] {
         let found = throw(speed, tolerance, "{ when: ball.y > H }");
         check(&found, [rises(speed + tolerance, 1.3), rises(least(1.3), 1.3)], 1e-4);
+        check_share(&found, 0.5 + (speed - least(1.3)) / (2.0 * tolerance));
     }
     // No event of the motion: fast balls pass it before the ceiling.
     check(&throw(5.0, 0.5, "{ when: ball.y > 1.2 m }"), [rises(5.5, 1.2), rises(least(1.2), 1.2)], 1e-4);
@@ -75,7 +83,11 @@ bounds: {{ chebyshev: {{ order: 3 }} }}
     let [soft, stiff] = [95.0_f64, 105.0].map(f64::sqrt);
     let reached = |omega: f64| (0.2 * omega / 2.2).asin();
     // Grazed at a quarter of the period.
-    check(&passed("when"), [reached(soft) / soft, PI / 2.0 / soft], 1e-4);
+    let first = passed("when");
+    check(&first, [reached(soft) / soft, PI / 2.0 / soft], 1e-4);
+    // v > 0.2 ω: over k the mean of √k is ⅔ (105^1.5 − 95^1.5)/10.
+    let mean = 2.0 / 3.0 * (stiff.powi(3) - soft.powi(3)) / 10.0;
+    check_share(&first, (2.2 - 0.2 * mean) / 0.4);
     check(&passed("last_when"), [PI / 2.0 / stiff, (PI - reached(soft)) / soft], 1e-4);
 }
 

@@ -438,3 +438,14 @@ fn redundant_stops_are_one() {
         }
     }
 }
+
+/// A floor of two conditions that are met at once, and are no multiples of each other: which of them the cubics through
+/// the ends of a step find first differs from sample to sample.
+#[test]
+fn conditions_that_are_met_at_once_are_one_event() {
+    let two = "\"if((ball.y + 1)^3 < 1, -K*ball.y/2, 0) + K/2*max(-ball.y, 0)\"";
+    let (bounds, summary) = run_methods(&read(&ELASTIC.replace("\"K*max(-ball.y, 0)\"", two)), None);
+    assert!(integrated(&summary, "chebyshev").0);
+    assert_true(&bounds, "v", 1e-3, 2e-3, |t| over_box(1, t));
+    assert_true(&bounds, "y", 1e-4, 2e-4, |t| over_box(0, t));
+}

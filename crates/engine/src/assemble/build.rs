@@ -317,7 +317,7 @@ impl<'g> Balance<'g> {
 }
 
 /// Whether a link has so many others in its tree, on average, that M is left out.
-fn are_long(links: &[Link]) -> bool {
+fn are_long(links: &[ChildLink]) -> bool {
     let mut roots: Vec<usize> = Vec::with_capacity(links.len());
     let mut sizes = vec![0_usize; links.len()];
     for (index, link) in links.iter().enumerate() {

@@ -46,6 +46,7 @@ fn reduced(all: &[ReducedSummary]) -> String {
             shares.map(|own| format!("{} {:.0} %", own.parameter, 100.0 * own.total)).collect();
         if let Some(occurs) = &own.occurs {
             notes.push(format!("occurs in {} of {} samples", occurs.samples, occurs.of));
+            notes.extend(occurs.share.map(of_box));
             let is_bounded = band(own).is_some_and(|band| !band.unresolved);
             let ends = own
                 .worst
@@ -60,6 +61,12 @@ fn reduced(all: &[ReducedSummary]) -> String {
         table.row([own.name.clone(), short(shown(own.nominal)), lower, upper, error, unit, notes.join(", ")]);
     }
     table.render(2)
+}
+
+/// A share of the box, at least and at most.
+fn of_box(share: [f64; 2]) -> String {
+    let [least, most] = share.map(|share| format!("{:.1}", 100.0 * share));
+    if least == most { format!("{least} % of the box") } else { format!("{least} to {most} % of the box") }
 }
 
 /// Verdicts with margins and errors.

@@ -83,10 +83,13 @@ pub struct Occurrence {
     /// Parameters of one that has none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub absent: Option<Vec<f64>>,
+    /// Share of the box in which there is one, at least and at most, where the box was divided for it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub share: Option<[f64; 2]>,
 }
 
 impl ReducedSummary {
-    /// Adds another piece of the box. Of several pieces together, contributions are not known.
+    /// Adds another piece of the box. Of several pieces together, contributions and shares are not known.
     pub fn add_piece(&mut self, other: &Self) {
         for (band, more) in self.bands.iter_mut().zip(&other.bands) {
             // NaN is passed on.
@@ -109,6 +112,7 @@ impl ReducedSummary {
             (Some(own), Some(more)) => {
                 own.samples += more.samples;
                 own.of += more.of;
+                own.share = None;
             }
             (own, more) => *own = own.take().or_else(|| more.clone()),
         }

@@ -191,7 +191,18 @@ impl<'s> Path<'s> {
             }
             ratio = self.attempt(end);
         }
-        is_located.then_some((end, ratio, Some(Event { switch, rises })))
+        is_located.then(|| (end, ratio, Some(self.first_of(Event { switch, rises }))))
+    }
+
+    /// The event by which those at the end of the step that was tried are named: of switches that pass zero at once
+    /// the first by number. Which of them a cubic finds first is an accident of the step.
+    fn first_of(&self, event: Event) -> Event {
+        let passes = |switch: usize| {
+            let ([before, _], [value, rate]) = (self.watch.at_beginning(switch, 0), self.watch.at_end(switch, 0));
+            let is_now = before * rate < 0.0 && (value / rate).abs() <= TUNING.same_event * self.duration;
+            is_now.then_some(Event { switch, rises: rate > 0.0 })
+        };
+        (0..event.switch).find_map(passes).unwrap_or(event)
     }
 
     /// Tries a step: its error over the tolerance.

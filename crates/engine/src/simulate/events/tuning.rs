@@ -63,6 +63,9 @@ tuning! {
         deciding_samples: usize = 8, moves "which motions are cut at events";
         /// Most words, each a sequence of events, that the motions of a box may spell.
         most_words: usize = 6, moves "which motions are cut at events";
+        /// Most events of a motion with a contact whose normal turns, where it may meet others instead: a pin that
+        /// rattles meets them by the hundred.
+        most_turning_events: usize = 16, moves "which motions are cut at events";
         /// Parameters, at most, of boxes with several words: each word costs a surrogate, and ranges of many
         /// parameters take long.
         most_of_parts: usize = 2, moves "which motions are cut at events";

@@ -53,7 +53,9 @@ pub fn segments_of(
         }
     }
     let Some((horizon, end, found)) = within_budget(&all, duration) else { return Ok(None) };
-    if found.len() > 1 && (is_whole || domain.dimension() > TUNING.most_of_parts) || end.is_some() && is_whole {
+    let has_few = || found.iter().all(|(word, _)| word.events.len() <= TUNING.most_turning_events);
+    let has_parts = domain.dimension() <= TUNING.most_of_parts && (!is_whole || has_few());
+    if found.len() > 1 && !has_parts || end.is_some() && is_whole {
         return Ok(None);
     }
     let (words, groups): (Vec<Word>, Vec<Vec<usize>>) = found.into_iter().unzip();
@@ -82,8 +84,9 @@ fn can_be_cut(simulator: &Simulator) -> bool {
     Instants::of(simulator).is_empty() && simulator.overlaps().is_none() && !simulator.system.analysis.visits()
 }
 
-/// Whether motions are cut only where one word lasts to the end. A contact whose normal turns in space rattles within a
-/// clearance: words are many, and their impacts so light that steps of one length for all follow the motion.
+/// Whether motions are cut only where words last to the end, and several are of few events. A contact whose normal
+/// turns in space rattles within a clearance: words are many, and their impacts so light that steps of one length for
+/// all follow the motion.
 fn is_cut_as_a_whole(simulator: &Simulator) -> bool {
     simulator.features().is_some()
 }

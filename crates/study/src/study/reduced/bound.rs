@@ -267,7 +267,7 @@ fn summary_of(
     let greatest = known().max_by(|a, b| a.1[index].total_cmp(&b.1[index])).map(case);
     let absent = values.samples.iter().find(|(_, values)| values[index].is_nan());
     let absent = absent.map(|(sample, _)| sample.to_vec());
-    let occurs = Occurrence { samples: known().count(), of: values.samples.len(), absent };
+    let occurs = Occurrence { samples: known().count(), of: values.samples.len(), absent, share: None };
     ReducedSummary {
         name: reduced.name.clone(),
         of: reduced.text.clone(),

@@ -30,6 +30,8 @@ pub struct InPart {
     /// Of the polynomials, and of the steps, s.
     pub surrogate: f64,
     pub time: f64,
+    /// Share of the box that is this part, at least and at most.
+    pub share: [f64; 2],
 }
 
 impl InPart {
@@ -45,6 +47,7 @@ impl InPart {
             (band.surrogate, band.time) = (error.surrogate, error.time);
             band.unresolved = error.unresolved[0] || contradicted[0] || is_unreliable;
         }
+        summary.occurs.iter_mut().for_each(|occurs| occurs.share = Some(self.share));
         summary
     }
 }
@@ -106,8 +109,9 @@ pub fn in_part(
     };
     let [direct, halved] = values;
     let Some((range, halved)) = range(direct)?.zip(range(halved)?) else { return Ok(None) };
-    let time = time_error_certified(range.0, halved.0);
-    Ok(Some(InPart { range: range.0, surrogate: range.1, time }))
+    let time = time_error_certified(range.range, halved.range);
+    let share = [range.share[0].min(halved.share[0]), range.share[1].max(halved.share[1])];
+    Ok(Some(InPart { range: range.range, surrogate: range.error, time, share }))
 }
 
 impl<'a> Instants<'a> {

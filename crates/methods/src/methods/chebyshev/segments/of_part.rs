@@ -1,6 +1,9 @@
 //! Bounds of a number that motions have in a part of the box only, such as the instant of an event that does not
 //! always occur.
 
+use symdiff::math;
+
+use super::basis::End;
 use super::fitting::Fitting;
 use super::parts::Samples;
 use super::piece::Piece;
@@ -45,7 +48,17 @@ impl Closure for Number {
     }
 }
 
-/// The range of a number over the parts of the box that have one, and how far its ends may be off. The ensemble's
+/// A number over the parts of the box that have one.
+#[derive(Clone, Copy, Debug)]
+pub struct RangeInPart {
+    pub range: Range,
+    /// How far its ends may be off.
+    pub error: f64,
+    /// Share of the box that these parts are, at least and at most.
+    pub share: [f64; 2],
+}
+
+/// The range of a number over the parts of the box that have one. The ensemble's
 /// segments are those of [`number_as_motion`], and it has no other output. `None` where a sample has none of the words
 /// that `known_to` speaks of.
 ///
@@ -55,7 +68,7 @@ pub fn range_in_part(
     ensemble: &dyn Ensemble,
     degree: usize,
     validation: &Validation,
-) -> Result<Option<(Range, f64)>, EnsembleError> {
+) -> Result<Option<RangeInPart>, EnsembleError> {
     let domain = ensemble.domain();
     let k = domain.dimension();
     let xi = [corners(k, TUNING.corners), spread(k, TUNING.samples_of_parts * k)].concat();
@@ -81,7 +94,29 @@ pub fn range_in_part(
         pieces.iter().filter(|piece| piece.surrogate.segments() > 0).map(of_piece).collect();
     let (extent, moved) = joined(&parts, 0);
     let error = held_out.map(|number| extent.range.distance(number)).fold(moved, f64::max);
-    Ok(Some((extent.range, error)))
+    Ok(Some(RangeInPart { range: extent.range, error, share: share(&pieces, k) }))
+}
+
+/// Share of the box that has a number, at least and at most: of points spread over it, those that surfaces leave in
+/// parts with a number only, and in any such part, wherever within their errors surfaces are. N points in k dimensions
+/// miss the volume behind a smooth surface by N^(−(k + 1)/2k) or so (J. Beck, Acta Math. 159 (1987) 1).
+fn share(pieces: &[Piece], k: usize) -> [f64; 2] {
+    let points = spread(k, TUNING.points_of_share);
+    let beyond = |piece: &Piece, xi: &[f64]| {
+        let of = |end: &End| -end.margin(xi) - end.error();
+        piece.surrogate.ends.iter().map(of).fold(0.0, f64::max)
+    };
+    let mut counts = [0_usize; 2];
+    for xi in &points {
+        let nearest = pieces.iter().map(|piece| beyond(piece, xi)).fold(f64::INFINITY, f64::min);
+        let possible = pieces.iter().filter(|piece| beyond(piece, xi) <= nearest);
+        let has: Vec<bool> = possible.map(|piece| piece.surrogate.segments() > 0).collect();
+        let [all, any] = [!has.contains(&false), has.contains(&true)];
+        counts = [counts[0] + usize::from(all), counts[1] + usize::from(any)];
+    }
+    let count = points.len() as f64;
+    let missed = TUNING.missed_share * math::pow(count, -0.5 - 0.5 / k as f64);
+    [counts[0] as f64 / count - missed, counts[1] as f64 / count + missed].map(|share| share.clamp(0.0, 1.0))
 }
 
 /// All numbers that motions stand for.

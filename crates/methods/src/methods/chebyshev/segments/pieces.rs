@@ -96,9 +96,8 @@ impl<'a> Pieces<'a> {
             let Some((_, jet)) = jet.filter(|(own, _)| *own == word) else { return Ok(None) };
             let basis = Basis::Taylor { monomials: space.monomials().clone(), centre };
             let ends = WordPart::of_word(word, &samples.motions).ends(&levels);
-            let surrogate = SegmentSurrogate::new(basis, ends, &jet, <[f64]>::to_vec);
-            // Ends are farther from the centre of a jet than samples are: what one of them shows is said of all steps.
-            let errors = SegmentErrors::new(&surrogate, &xi, motions).of_segments();
+            let surrogate = SegmentSurrogate::new(basis, ends, &jet, <[f64]>::to_vec).told_at(&xi);
+            let errors = SegmentErrors::new(&surrogate, &xi, motions);
             all.push(Piece::new(surrogate, errors, xi));
         }
         let added = samples.xi.len() - validation.points.len() + all.len() - 1;

@@ -18,6 +18,8 @@ pub(super) struct SegmentSurrogate<'a> {
     lines: usize,
     /// By what coefficients were fitted, where they were.
     squares: Option<LeastSquares>,
+    /// Of a jet, distance from its centre along each axis, at most, of samples that tell its errors.
+    reach: Vec<f64>,
 }
 
 /// A point of the box with its values that do not depend on the time.
@@ -41,9 +43,18 @@ pub(super) struct SegmentErrors {
     pub lines: Vec<Vec<Vec<f64>>>,
 }
 
+/// Shares between which the branch of a segment is known: it goes on beyond its ends by a part of the segment, and of
+/// the step there.
+fn branch(steps: &[f64]) -> [f64; 2] {
+    let last = 1.0 - steps.len().checked_sub(2).map_or(0.0, |before| steps[before]);
+    let beyond = |step: f64| TUNING.beyond_branch.min(TUNING.beyond_step * step);
+    [-beyond(steps[0]), 1.0 + beyond(last)]
+}
+
 /// A share on the branch of a segment.
-fn beside(share: f64) -> f64 {
-    if share.is_nan() { 0.0 } else { share.clamp(-TUNING.beyond_branch, 1.0 + TUNING.beyond_branch) }
+fn beside(steps: &[f64], share: f64) -> f64 {
+    let [first, last] = branch(steps);
+    if share.is_nan() { 0.0 } else { share.clamp(first, last) }
 }
 
 /// The share of a segment at which a node of its steps is.
@@ -69,7 +80,7 @@ impl<'a> SegmentSurrogate<'a> {
         let nodes: Vec<Vec<Vec<f64>>> =
             motions.nodes.iter().map(|nodes| nodes.iter().map(|node| coefficients(node)).collect()).collect();
         let lines = nodes.first().and_then(|nodes| nodes.first()).map_or(0, |node| node.len() / basis.len());
-        Self { basis, ends, steps: motions.steps.clone(), times, nodes, lines, squares: None }
+        Self { basis, ends, steps: motions.steps.clone(), times, nodes, lines, squares: None, reach: Vec::new() }
     }
 
     /// The same, whose coefficients were fitted by these.
@@ -77,9 +88,21 @@ impl<'a> SegmentSurrogate<'a> {
         Self { squares: Some(squares), ..self }
     }
 
-    /// How far some ξ is outside of the samples of a fit: by the square of so many times the errors of samples may the
-    /// fit be off there; at most 1 among them.
+    /// The same, a jet whose errors are told at these samples.
+    pub fn told_at(self, xi: &[Vec<f64>]) -> Self {
+        let Basis::Taylor { centre, .. } = &self.basis else { return self };
+        let of_axis = |(axis, centre): (usize, &f64)| largest(xi.iter().map(|xi| xi[axis] - centre));
+        let reach = centre.iter().enumerate().map(of_axis).collect();
+        Self { reach, ..self }
+    }
+
+    /// How far some ξ is outside of the samples that tell errors: by the square of so many times these may a fit, or a
+    /// jet, be off there; of a fit at most 1 among them.
     pub fn leverage(&self, xi: &[f64]) -> f64 {
+        if let Basis::Taylor { monomials, centre } = &self.basis {
+            let ratios = xi.iter().zip(centre).zip(&self.reach).map(|((xi, centre), reach)| (xi - centre) / reach);
+            return largest(ratios).powi(2 * (monomials.order() as i32 + 1));
+        }
         let of = |squares: &LeastSquares| {
             self.basis.values(&[xi.to_vec()]).first().map_or(f64::NAN, |terms| squares.leverage(terms))
         };
@@ -132,7 +155,8 @@ impl<'a> SegmentSurrogate<'a> {
     /// The step of a segment in which a point is at a time, and the weights of its nodes.
     fn weights(&self, point: &Point, segment: usize, time: f64) -> (usize, [f64; STEP_NODES]) {
         let [begin, end] = [point.times[segment], point.times[segment + 1]];
-        step_weights(&self.steps[segment], beside((time - begin) / (end - begin)))
+        let steps = &self.steps[segment];
+        step_weights(steps, beside(steps, (time - begin) / (end - begin)))
     }
 
     /// The motion (2n) of some ξ at a time.
@@ -185,7 +209,8 @@ impl SegmentErrors {
     }
 
     /// Of motions that are predicted. Lines are compared at the times of the direct nodes: where an instant is late,
-    /// the motion at the same share of the segment is that of a later time.
+    /// the motion at the same share of the segment is that of a later time. Where most of a segment is predicted, times
+    /// at which another one is say nothing of this one: there a row is in that one, and the instants' errors tell.
     pub fn between(direct: &SegmentMotions, predicted: &SegmentMotions) -> Self {
         let count = direct.samples.len();
         let difference = |(own, values): (&Vec<f64>, &Vec<f64>)| largest(own.iter().zip(values).map(|(a, b)| a - b));
@@ -199,10 +224,14 @@ impl SegmentErrors {
                 // A node between two steps is of both.
                 let of_steps = node.saturating_sub(1) / (STEP_NODES - 1)..=node / (STEP_NODES - 1);
                 for sample in 0..count {
-                    let [begin, end] = [segment, segment + 1].map(|number| direct.times[number][sample]);
-                    let time = begin + share * (end - begin);
-                    let [begin, end] = [segment, segment + 1].map(|number| predicted.times[number][sample]);
-                    let (step, weights) = step_weights(steps, beside((time - begin) / (end - begin)));
+                    let ends = |times: &[Vec<f64>]| [segment, segment + 1].map(|number| times[number][sample]);
+                    let ([begin, end], [from, to]) = (ends(&direct.times), ends(&predicted.times));
+                    let other = (begin + share * (end - begin) - from) / (to - from);
+                    let is_beside = beside(steps, other) != other;
+                    if is_beside && end.min(to) - begin.max(from) >= TUNING.shared_segment * (end - begin) {
+                        continue;
+                    }
+                    let (step, weights) = step_weights(steps, beside(steps, other));
                     let nodes = &predicted.nodes[segment][step * (STEP_NODES - 1)..][..STEP_NODES];
                     for line in 0..lines {
                         let at = line * count + sample;
@@ -227,17 +256,6 @@ impl SegmentErrors {
         raise(&mut self.times, &other.times);
         let steps = self.lines.iter_mut().zip(&other.lines).flat_map(|(own, other)| own.iter_mut().zip(other));
         steps.for_each(|(own, other)| raise(own, other));
-        self
-    }
-
-    /// The largest of all steps of each segment, in each of them.
-    #[must_use]
-    pub fn of_segments(mut self) -> Self {
-        for steps in &mut self.lines {
-            let most = |line: usize| largest(steps.iter().map(|errors| errors[line]));
-            let all: Vec<f64> = (0..steps.first().map_or(0, Vec::len)).map(most).collect();
-            steps.iter_mut().for_each(|errors| errors.clone_from(&all));
-        }
         self
     }
 

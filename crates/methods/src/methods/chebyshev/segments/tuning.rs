@@ -73,6 +73,10 @@ tuning! {
         degrees_of_part: [usize; 4] = [8, 5, 3, 2], moves "Chebyshev bounds through events";
         /// Samples for each parameter that show the parts of jets and of instants.
         samples_of_parts: usize = 24, moves "Chebyshev bounds through events";
+        /// Points spread over the box that tell the share of it in which an event occurs.
+        points_of_share: usize = 1 << 14, moves "shares of the box";
+        /// Such points miss a volume by so many times what is expected of so many.
+        missed_share: f64 = 2.0, moves "shares of the box";
         /// Difference by which slopes of surfaces are taken.
         step_of_surfaces: f64 = 1e-6, moves "errors of Chebyshev bounds through events";
         /// An end beside a surface is moved with it where it is nearer than so many times the surface's error.
@@ -109,7 +113,11 @@ tuning! {
         most_on_surface: usize = 96, moves "Chebyshev bounds through events";
         /// Corrections of a point on a surface along its edge.
         corrections: usize = 5, moves "Chebyshev bounds through events";
-        /// How far the branch of a segment goes on beyond its ends, as a share of it.
+        /// How far the branch of a segment goes on beyond its ends, as a share of it, at most.
         beyond_branch: f64 = 0.02, moves "Chebyshev bounds through events";
+        /// How far it does as a share of the step there, at most: beyond that a polynomial through its nodes says nothing.
+        beyond_step: f64 = 0.2, moves "Chebyshev bounds through events";
+        /// Where so much of a segment is predicted, the motion is not held against it at times at which it is in another.
+        shared_segment: f64 = 0.5, moves "errors of Chebyshev bounds through events";
     }
 }
