@@ -3,7 +3,7 @@
 use super::Error;
 use crate::model::Description;
 use crate::numerics::Sample;
-use crate::study::{Chosen, Options, Sampled, sample, uncertain};
+use crate::study::{ChosenSamples, Options, Sampled, sample, uncertain};
 
 /// Outputs over time of simulations at chosen points.
 #[derive(Clone, Debug)]
@@ -24,7 +24,7 @@ impl Samples {
             return Err(Error::Point { index, parameters });
         }
         let at = |range: std::ops::Range<usize>| points[range].iter().cloned().map(Sample::from).collect();
-        sample(description, options, Chosen { count: points.len(), at: &at }, |trajectories| {
+        sample(description, options, ChosenSamples { count: points.len(), at: &at }, |trajectories| {
             let mut values = Vec::new();
             let sampled = trajectories.each(|own| {
                 values.extend_from_slice(own);

@@ -7,7 +7,7 @@ use indicatif::HumanBytes;
 
 use super::console::count;
 use crate::results::ModelFile;
-use crate::store::{Asked, Content, Missing, PartStore, Shard, StoreError};
+use crate::store::{Content, Missing, PartStore, Shard, StoreError, StudyRequest};
 
 /// Store of a run's simulations, with the tasks it left to shards.
 #[derive(Debug)]
@@ -37,7 +37,7 @@ impl KeptRun {
     }
 
     /// In the folder of a study, of which shards are left that take at most so many seconds.
-    pub fn of_study(folder: PathBuf, asked: &Asked) -> Self {
+    pub fn of_study(folder: PathBuf, asked: &StudyRequest) -> Self {
         Self { shard_seconds: asked.shard_seconds, ..Self::new(folder, Missing::Defer(asked.at_once)) }
     }
 

@@ -16,7 +16,7 @@ use crate::numerics::Sample;
 use crate::results::{SampleFormat, SampleTable};
 use crate::simulate::SimulationError;
 use crate::store::Missing;
-use crate::study::{self, Chosen, RunError};
+use crate::study::{self, ChosenSamples, RunError};
 
 /// The samples and their destination.
 pub(super) struct Sampling<'s> {
@@ -128,8 +128,10 @@ impl Sampling<'_> {
             interrupted: &interrupt::asked,
             ..study::Options::default()
         };
-        let chosen =
-            Chosen { count: points.count(), at: &|places| points.at(places).into_iter().map(Sample::from).collect() };
+        let chosen = ChosenSamples {
+            count: points.count(),
+            at: &|places| points.at(places).into_iter().map(Sample::from).collect(),
+        };
         let output = self.output;
         let mut ended = None;
         let done = study::sample(&description, &options, chosen, |trajectories| {

@@ -17,7 +17,7 @@ use super::sample::target;
 use super::{Failure, Status, load};
 use crate::methods::{Certified, Method, Proof};
 use crate::model::Override;
-use crate::store::{Asked, Missing, PartStore, Plan, Shard, StoreError, StudyFolder};
+use crate::store::{Missing, PartStore, Plan, Shard, StoreError, StudyFolder, StudyRequest};
 use crate::study;
 
 fn failed(error: &StoreError) -> Failure {
@@ -37,7 +37,7 @@ pub(super) fn plan(args: PlanArgs, console: &mut Console) -> Result<Status, Fail
         models.push(absolute(model)?);
     }
     let said = set.given()?;
-    let asked = Asked {
+    let asked = StudyRequest {
         models,
         named: args.models,
         set: said.overrides.iter().map(|setting| setting.text.clone()).collect(),
@@ -162,7 +162,7 @@ pub(super) fn status(args: &StatusArgs, console: &mut Console) -> Result<Status,
 }
 
 /// What `mbint run` would be asked for.
-fn request(asked: &Asked, threads: Threads, kept: KeptRun) -> Result<Request, Failure> {
+fn request(asked: &StudyRequest, threads: Threads, kept: KeptRun) -> Result<Request, Failure> {
     Ok(Request {
         witness: None,
         models: asked.models.clone(),
@@ -191,11 +191,11 @@ fn request(asked: &Asked, threads: Threads, kept: KeptRun) -> Result<Request, Fa
 }
 
 /// What certified bounds are to prove, if they are asked for.
-fn proof(asked: &Asked) -> Option<Proof> {
+fn proof(asked: &StudyRequest) -> Option<Proof> {
     asked.certify.then_some(if asked.certify_scheme { Proof::Scheme } else { Proof::Motion })
 }
 
-fn methods(asked: &Asked) -> Result<Option<Vec<Method>>, Failure> {
+fn methods(asked: &StudyRequest) -> Result<Option<Vec<Method>>, Failure> {
     let method = |name: &String| {
         let known = Method::ALL.into_iter().find(|method| method.name() == name);
         known.ok_or_else(|| Failure::failed(format!("there is no method `{name}`")))
@@ -208,7 +208,7 @@ fn absolute(path: &Path) -> Result<PathBuf, Failure> {
     std::path::absolute(path).map_err(|error| Failure::wrong(format!("{}: {error}", path.display())))
 }
 
-fn given(asked: &Asked) -> Result<Given, Failure> {
+fn given(asked: &StudyRequest) -> Result<Given, Failure> {
     let parse = |text: &String| Override::parse(text).map_err(|_| Failure::failed(format!("`{text}` cannot be read")));
     Ok(Given {
         overrides: asked.set.iter().map(parse).collect::<Result<_, _>>()?,

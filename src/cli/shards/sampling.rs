@@ -9,7 +9,7 @@ use crate::cli::kept_run::KeptRun;
 use crate::cli::sample::{Points, Sampling};
 use crate::cli::{Failure, Status};
 use crate::results::SampleFormat;
-use crate::store::{Asked, AskedPoints};
+use crate::store::{AskedPoints, StudyRequest};
 
 /// What a plan has to say of the points; `None` where bounds are asked for.
 pub(super) fn asked(args: &PointArgs) -> Result<Option<AskedPoints>, Failure> {
@@ -23,7 +23,7 @@ pub(super) fn asked(args: &PointArgs) -> Result<Option<AskedPoints>, Failure> {
 
 /// Simulates or defers the missing samples of a study, and writes them where a file is given.
 pub(super) fn simulate(
-    asked: &Asked,
+    asked: &StudyRequest,
     kept: &KeptRun,
     output: Option<(PathBuf, SampleFormat)>,
     threads: Threads,

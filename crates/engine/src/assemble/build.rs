@@ -15,7 +15,7 @@ use super::mechanism::Mechanism;
 use super::powers::PowerBalance;
 use super::questions::Questions;
 use super::recursion;
-use super::system::{CoordinateInfo, EffectInfo, FormulationInfo, Link, Nearest, Omission, Overlap, System};
+use super::system::{ChildLink, CoordinateInfo, EffectInfo, FormulationInfo, Nearest, Omission, Overlap, System};
 use super::tree::Tree;
 use crate::assemble::tuning::TUNING;
 use crate::grammar::Sensor;
@@ -258,7 +258,7 @@ struct Balance<'g> {
     /// What acts under conditions.
     conditional: Vec<Scalar<'g>>,
     /// The children, parents first.
-    links: Vec<Link>,
+    links: Vec<ChildLink>,
 }
 
 impl<'g> Balance<'g> {

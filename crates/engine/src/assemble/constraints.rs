@@ -14,7 +14,7 @@ use crate::multibody::{Body, BuildError, EULER, Quaternion, RotationCoordinates}
 
 /// Constraints of a kind, with their multipliers.
 #[derive(Default)]
-pub struct Rows<'g> {
+pub struct ConstraintRows<'g> {
     /// Names and units.
     pub infos: Vec<ConstraintInfo>,
     /// Φ, or Ψ.
@@ -27,9 +27,9 @@ pub struct Rows<'g> {
 #[derive(Default)]
 pub struct Constraints<'g> {
     /// Φ
-    pub positions: Rows<'g>,
+    pub positions: ConstraintRows<'g>,
     /// Ψ
-    pub velocities: Rows<'g>,
+    pub velocities: ConstraintRows<'g>,
     /// The joints that are no inboard joints.
     pub closures: Vec<usize>,
 }
@@ -96,7 +96,7 @@ impl<'g> Constraints<'g> {
     }
 }
 
-impl<'g> Rows<'g> {
+impl<'g> ConstraintRows<'g> {
     /// The rows of a joint that constrain anything, each with its multiplier, in a model of a size.
     fn add_rows(
         &mut self,

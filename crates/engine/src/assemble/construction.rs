@@ -8,7 +8,7 @@ use symdiff::{Builder, Formula};
 use super::coordinates;
 use super::inputs::{inputs, random_symbols};
 use super::mechanism::{Mechanism, Owner, dof};
-use super::names::Names;
+use super::names::DescriptionNames;
 use super::questions::Questions;
 use super::superelement::superelements;
 use super::system::UncertainParameter;
@@ -29,7 +29,7 @@ impl<'g, 'd> Mechanism<'g, 'd> {
         let mut mechanism = Self {
             g,
             questions,
-            names: Names::of(description),
+            names: DescriptionNames::of(description),
             is_spatial: description.space.spatial,
             joints: &description.joints,
             line_masses: description.effects.iter().filter_map(|effect| effect.kind.inertia()).collect(),

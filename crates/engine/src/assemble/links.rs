@@ -5,7 +5,7 @@ use symdiff::Scalar;
 use super::applied_forces::AppliedForces;
 use super::mechanism::Mechanism;
 use super::recursion::InertialForces;
-use super::system::Link;
+use super::system::ChildLink;
 use crate::multibody::{Attitude, Vector, Wrench};
 
 /// The children with what goes through them: motions, and the sums of forces.
@@ -13,7 +13,7 @@ pub(super) fn links_of<'g>(
     m: &Mechanism<'g, '_>,
     inertial: &InertialForces<'g>,
     applied: &[&AppliedForces<'g>],
-) -> Vec<Link> {
+) -> Vec<ChildLink> {
     let applied: Vec<Vec<Wrench>> = applied.iter().map(|forces| forces.with_children(m)).collect();
     let mut links = Vec::new();
     let mut link_of: Vec<Option<usize>> = vec![None; m.bodies.len()];
@@ -32,7 +32,7 @@ pub(super) fn links_of<'g>(
         let normalisation = m.normalisations.get(&relative.joint).copied();
         let parent = link_of[relative.parent];
         link_of[index] = Some(links.len());
-        links.push(Link { parent, coordinates, normalisation, values: Scalar::exprs(&values), inertial_forces });
+        links.push(ChildLink { parent, coordinates, normalisation, values: Scalar::exprs(&values), inertial_forces });
     }
     links
 }

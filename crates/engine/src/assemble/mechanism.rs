@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, HashMap};
 use symdiff::{Builder, Expr, Scalar};
 
 use super::inputs::{MechanismInput, RandomSymbols};
-use super::names::Names;
+use super::names::DescriptionNames;
 use super::questions::Questions;
 use super::reaction::Reaction;
 use super::superelement::Superelement;
@@ -97,7 +97,7 @@ pub struct Mechanism<'g, 'd> {
     /// The description with its questions.
     pub questions: &'d Questions<'d>,
     /// What names in formulas stand for.
-    pub names: Names<'d>,
+    pub names: DescriptionNames<'d>,
     /// Whether it leaves the plane.
     pub is_spatial: bool,
     /// The joints.

@@ -7,9 +7,9 @@ use crate::multibody::{BuildError, Context};
 
 /// The names of a description.
 #[derive(Clone, Copy)]
-pub struct Names<'d>(&'d Description);
+pub struct DescriptionNames<'d>(&'d Description);
 
-impl<'d> Names<'d> {
+impl<'d> DescriptionNames<'d> {
     /// All of them.
     pub fn of(description: &'d Description) -> Self {
         Self(description)

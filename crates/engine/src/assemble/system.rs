@@ -59,7 +59,7 @@ pub struct System {
     /// States that change at instants only.
     pub sampled: Vec<SampledState>,
     /// In joint coordinates the children, parents first.
-    pub links: Vec<Link>,
+    pub links: Vec<ChildLink>,
     /// Observed quantities over t, q, v, w, λ and the parameters.
     pub outputs: Vec<OutputInfo>,
     /// The model's size, m: the largest length that it names.
@@ -156,7 +156,7 @@ pub struct SampledState {
 
 /// A child of the trees: all that bodies before it feel of it, and it of them, goes through a few values.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Link {
+pub struct ChildLink {
     /// The one before it; `None` where its parent is a root.
     pub parent: Option<usize>,
     /// The coordinates of its inboard joint.

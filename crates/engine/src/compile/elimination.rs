@@ -10,7 +10,7 @@ use rustc_hash::FxHashMap;
 use symdiff::{Expr, Graph, Guard, Input, SparseMatrix, Stages};
 
 use super::newton_matrix::ITERATION;
-use super::program::{Mode, Watched, WatchedPivot};
+use super::program::{FactorMode, WatchedPivot, WatchedPivots};
 use super::sparse_lu::{Factors, NoFactors, Numbers, PivotRule, Pivoting, factorise};
 use crate::assemble::ConstraintId;
 use crate::compile::tuning::TUNING;
@@ -107,7 +107,7 @@ pub(super) struct Elimination {
     /// Values that only one version needs.
     pub guards: FxHashMap<Expr, Guard>,
     /// Pivots that can become small.
-    pub watched: Vec<Watched>,
+    pub watched: Vec<WatchedPivots>,
     /// The matrix's factors; of two versions, those of active conditional effects.
     pub active: Version,
     /// The same over frozen values.
@@ -129,7 +129,7 @@ impl Elimination {
         let mut freezer = Freezer::new(graph, inputs, next);
         let Some((condition, inactive)) = inactive else {
             let frozen_active = freezer.freeze(&active.factors, None);
-            let watched = vec![Watched { mode: None, pivots: freezer.watch(&active) }];
+            let watched = vec![WatchedPivots { mode: None, pivots: freezer.watch(&active) }];
             let Freezer { frozen, guards, .. } = freezer;
             return Self { frozen, guards, watched, active, frozen_active, inactive: None };
         };
@@ -139,8 +139,8 @@ impl Elimination {
         let frozen_condition = freezer.frozen_value(condition);
         let (_, register) = freezer.symbol_of[&condition];
         let watched = [(&active, false), (&inactive, true)].map(|(version, inactive)| {
-            let mode = Some(Mode { register: register as usize, inactive });
-            Watched { mode, pivots: freezer.watch(version) }
+            let mode = Some(FactorMode { register: register as usize, inactive });
+            WatchedPivots { mode, pivots: freezer.watch(version) }
         });
         let watched = watched.into();
         let Freezer { frozen, guards, .. } = freezer;

@@ -3,7 +3,7 @@
 use rustc_hash::FxHashMap;
 use symdiff::{Expr, Graph};
 
-use super::start_equations::Equations;
+use super::start_equations::StartEquations;
 use crate::assemble::System;
 use crate::certificate::{self, Node};
 
@@ -21,7 +21,7 @@ pub enum AtStart {
 /// The list. `start` says of each coordinate what determines its position, and its velocity.
 pub fn list_equations(system: &System, start: &[Vec<AtStart>; 2]) -> certificate::Equations {
     let mut graph = system.graph.clone();
-    let Equations { motion, closure, closure_rate, rate_of_rate, .. } = Equations::new(system, &mut graph);
+    let StartEquations { motion, closure, closure_rate, rate_of_rate, .. } = StartEquations::new(system, &mut graph);
     let mut of_start = |level: usize, symbols: &[Expr], closure: &[Expr]| -> Vec<Expr> {
         let mut rows = Vec::new();
         for (&symbol, at_start) in symbols.iter().zip(&start[level]) {

@@ -4,7 +4,7 @@ use rustc_hash::FxHashMap;
 use symdiff::{Binary, Expr, Graph, Lowered, Node, SparseMatrix, Tape, Unary, lower};
 
 use super::layout::Layout;
-use super::start_equations::Equations;
+use super::start_equations::StartEquations;
 use super::tapes::Tapes;
 use crate::assemble::System;
 
@@ -117,7 +117,7 @@ impl EquationsProgram {
 pub fn compile_equations(system: &System) -> EquationsProgram {
     let layout = Layout::of(system);
     let mut graph = system.graph.clone();
-    let Equations {
+    let StartEquations {
         motion,
         jacobian,
         closure,
@@ -126,7 +126,7 @@ pub fn compile_equations(system: &System) -> EquationsProgram {
         closure_rate_jacobian,
         rate,
         rate_of_rate,
-    } = Equations::new(system, &mut graph);
+    } = StartEquations::new(system, &mut graph);
     let of_closure = [closure_jacobian, closure_rate_jacobian];
     let by = |graph: &mut Graph, symbols: &[Expr]| graph.jacobian(&motion, symbols);
     let mut matrices: Vec<SparseMatrix> =

@@ -23,7 +23,7 @@ use crate::compile::tuning::TUNING;
 
 /// Whether the equations are eliminated link by link.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Elimination {
+pub(super) enum LinkElimination {
     /// They are not.
     Whole,
     /// If that is shorter.
@@ -33,15 +33,15 @@ pub(super) enum Elimination {
 }
 
 /// Which eliminations are worth a look.
-pub(super) fn elimination(system: &System, has_redundant: bool) -> Elimination {
+pub(super) fn elimination(system: &System, has_redundant: bool) -> LinkElimination {
     let n = system.q.len();
     let is_sparse = !system.is_mass_left_out() && system.mass.len() < TUNING.coupled * n;
     if system.links.is_empty() || has_redundant || system.massive.contains(&false) || is_sparse {
-        Elimination::Whole
+        LinkElimination::Whole
     } else if system.is_mass_left_out() || system.mass.len() >= TUNING.closely_coupled * n {
-        Elimination::Links
+        LinkElimination::Links
     } else {
-        Elimination::Shorter
+        LinkElimination::Shorter
     }
 }
 

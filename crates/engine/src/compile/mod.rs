@@ -47,7 +47,7 @@ pub use equations::{ClosureRow, Equation, equations_of_motion, time_derivative};
 pub use layout::Layout;
 pub use nearest::OpenStart;
 pub use powers::{OF_EFFECT, OF_WHOLE, observing_powers};
-pub use program::{PivotSample, Program, Watched};
+pub use program::{PivotSample, Program, WatchedPivots};
 pub use scheme::{Coefficients, Scheme};
 pub use sparse_lu::NoFactors;
 pub use start::{compile_nearest_start, compile_start};

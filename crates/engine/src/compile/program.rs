@@ -25,14 +25,14 @@ pub struct WatchedPivot {
 /// Which lanes solve with a version of the factors: decided by the active condition at the iterate of the
 /// factorisation.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Mode {
+pub struct FactorMode {
     /// Register of the active condition.
     pub register: usize,
     /// Whether the lanes are those in which the condition is not positive.
     pub inactive: bool,
 }
 
-impl Mode {
+impl FactorMode {
     /// Whether a lane with this value of the condition is one of them.
     #[inline(always)]
     pub fn holds(&self, value: f64) -> bool {
@@ -42,9 +42,9 @@ impl Mode {
 
 /// The pivots of one version of the factors.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Watched {
+pub struct WatchedPivots {
     /// Which lanes use the version; `None` for all, where there is one version.
-    pub mode: Option<Mode>,
+    pub mode: Option<FactorMode>,
     /// The version's pivots that can change.
     pub pivots: Vec<WatchedPivot>,
 }
@@ -73,7 +73,7 @@ pub struct Program {
     /// Registers of the multipliers of redundant constraints: undetermined reactions, which are taken as zero.
     pub redundant: Vec<usize>,
     /// Pivots that can become small, for each version of the factors.
-    pub watched: Vec<Watched>,
+    pub watched: Vec<WatchedPivots>,
     /// Symmetric scaling that equilibrates the Newton matrix, n + m.
     pub equilibration: Vec<f64>,
     /// Nonzeros of the Newton matrix and of its factors.

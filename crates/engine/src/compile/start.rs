@@ -37,7 +37,7 @@ use super::layout::Layout;
 use super::links::{self, MassOfLinks};
 use super::nearest::{LeastSquares, OpenStart};
 use super::sparse_lu::{NoFactors, Numbers, PivotRule, Pivoting, factorise};
-use super::start_equations::{ClosureOf, Equations, constraint_sizes, given_values, named, residuals};
+use super::start_equations::{ClosureOf, StartEquations, constraint_sizes, given_values, named, residuals};
 use super::start_factors::Factorised;
 use super::start_program::{JACOBIAN, OBSERVE, POSITION, SAMPLING, SampledValue, StartProgram, VELOCITY};
 use crate::assemble::{ConstraintId, System};
@@ -75,7 +75,7 @@ pub fn compile_nearest_start(
         Some(nearest) if open.is_any() => nearest.graph.as_ref().unwrap_or(&system.graph).clone(),
         _ => system.graph.clone(),
     };
-    let equations = Equations::new(system, &mut graph);
+    let equations = StartEquations::new(system, &mut graph);
     let at_sample = AtSample::new(&inputs, sample);
     let masses = at_sample.masses(system);
     let mut builder =
@@ -155,7 +155,11 @@ struct Builder<'s> {
 
 impl Builder<'_> {
     /// The corrections of positions, of velocities, of accelerations with multipliers, and of a motion's velocities.
-    fn corrections(&mut self, equations: &Equations, open: OpenStart) -> Result<[Vec<Expr>; 4], NoFactors<Equation>> {
+    fn corrections(
+        &mut self,
+        equations: &StartEquations,
+        open: OpenStart,
+    ) -> Result<[Vec<Expr>; 4], NoFactors<Equation>> {
         let system = self.system;
         let n = system.q.len();
         let smallest = LeastSquares::smallest_change(system, &mut self.graph);
@@ -164,7 +168,7 @@ impl Builder<'_> {
         let [positions, velocities] = [&positions, &velocities].map(|open| open.as_ref().unwrap_or(&smallest));
         let given = |values: &[Option<Expr>]| values.iter().map(Option::is_some).collect::<Vec<bool>>();
         let none = SparseMatrix::zero(n, system.lambda.len());
-        let Equations { closure, closure_jacobian, closure_rate, closure_rate_jacobian, .. } = equations;
+        let StartEquations { closure, closure_jacobian, closure_rate, closure_rate_jacobian, .. } = equations;
         let position = self
             .correction(
                 &positions.metric,
@@ -198,12 +202,12 @@ impl Builder<'_> {
             )
             .map_err(|none| named(system, none, ClosureOf::Velocities))?;
         let by_multiplier = self.graph.jacobian(&system.force, &system.lambda);
-        let Equations { jacobian, rate_of_rate, .. } = equations;
+        let StartEquations { jacobian, rate_of_rate, .. } = equations;
         let pairs = self.pairs(jacobian);
         let elimination = links::elimination(system, !self.redundant.is_empty() || !pairs.is_empty());
         let entries = match elimination {
-            links::Elimination::Links => Vec::new(),
-            links::Elimination::Whole | links::Elimination::Shorter => system.mass_entries(&mut self.graph),
+            links::LinkElimination::Links => Vec::new(),
+            links::LinkElimination::Whole | links::LinkElimination::Shorter => system.mass_entries(&mut self.graph),
         };
         let motion = equations.motion.clone();
         let (mass, motion) = self.with_defined_coordinates(jacobian, entries.clone(), motion, rate_of_rate, &pairs);
@@ -215,12 +219,12 @@ impl Builder<'_> {
             builder.correction(&mass, &by_multiplier, jacobian, of_masses, &motion, rate_of_rate).map_err(of_motion)
         };
         let acceleration = match elimination {
-            links::Elimination::Whole => solve(self)?,
-            links::Elimination::Links => {
+            links::LinkElimination::Whole => solve(self)?,
+            links::LinkElimination::Links => {
                 self.linked = Some(MassOfLinks::new(system, &mut self.graph));
                 solve(self)?
             }
-            links::Elimination::Shorter => {
+            links::LinkElimination::Shorter => {
                 let before = (self.graph.clone(), self.factorised.len());
                 let whole = solve(self)?;
                 let operations = self.graph.reachable(&whole).len();

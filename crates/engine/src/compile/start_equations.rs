@@ -20,7 +20,7 @@ pub struct Residual {
 }
 
 /// The equations that hold at the start.
-pub(super) struct Equations {
+pub(super) struct StartEquations {
     /// M w + Φ_qᵀ λ − Q, with Ψ_vᵀ λ.
     pub motion: Vec<Expr>,
     /// Φ_q, then Ψ_v.
@@ -66,7 +66,7 @@ impl ClosureOf {
     }
 }
 
-impl Equations {
+impl StartEquations {
     /// Over the system's own symbols.
     pub fn new(system: &System, graph: &mut Graph) -> Self {
         let (motion, jacobian) = equations_of_motion(system, graph);

@@ -31,9 +31,9 @@ pub fn compile(
 ) -> Result<Program, NoFactors<Equation>> {
     let compiled = |by_links| compile_as(system, scheme, redundant, samples, by_links);
     match links::elimination(system, !redundant.is_empty()) {
-        links::Elimination::Whole => compiled(false),
-        links::Elimination::Links => compiled(true).or_else(|_| compiled(false)),
-        links::Elimination::Shorter => {
+        links::LinkElimination::Whole => compiled(false),
+        links::LinkElimination::Links => compiled(true).or_else(|_| compiled(false)),
+        links::LinkElimination::Shorter => {
             let whole = compiled(false);
             let Ok(by_links) = compiled(true) else { return whole };
             let is_shorter = whole.as_ref().is_ok_and(|whole| whole.instructions() <= by_links.instructions());

@@ -31,13 +31,13 @@ fn placed(d: &Description) -> Vec<bool> {
 
 /// Questions to a subsystem; indices refer to the whole model.
 #[derive(Default)]
-pub struct Asked {
+pub struct SubsystemQuestions {
     pub outputs: Vec<usize>,
     pub reduced: Vec<usize>,
     pub requirements: Vec<usize>,
 }
 
-impl Asked {
+impl SubsystemQuestions {
     /// An output alone.
     pub fn output(number: usize) -> Self {
         Self { outputs: vec![number], ..Self::default() }
@@ -75,7 +75,7 @@ pub fn extract(
     merged: &[bool],
     couplings: &mut Couplings,
     set: Option<usize>,
-    asked: Asked,
+    asked: SubsystemQuestions,
 ) -> Subsystem {
     let mut part = description.clone();
     asked.ask(&mut part);
@@ -122,7 +122,7 @@ pub fn extract(
     narrow(&mut part, &left);
     let mut merged = merged.to_vec();
     retain(&mut merged, &kept.joints);
-    let Asked { outputs, reduced, requirements } = asked;
+    let SubsystemQuestions { outputs, reduced, requirements } = asked;
     Subsystem { description: part, merged, outputs, reduced, requirements, parameters: left }
 }
 
@@ -159,7 +159,13 @@ fn with_earlier(description: &Description, parameters: &mut [bool]) {
 }
 
 impl Kept {
-    fn of(d: &Description, couplings: &mut Couplings, set: Option<usize>, asked: &Asked, required: &[bool]) -> Self {
+    fn of(
+        d: &Description,
+        couplings: &mut Couplings,
+        set: Option<usize>,
+        asked: &SubsystemQuestions,
+        required: &[bool],
+    ) -> Self {
         let mut has = |part: Member| !couplings.is_grounded(part) && set.is_some_and(|set| couplings.set(part) == set);
         let mut bodies: Vec<bool> = (0..d.bodies.len()).map(|body| has(Member::Body(body))).collect();
         let mut joints: Vec<bool> = (0..d.joints.len()).map(|joint| has(Member::Joint(joint))).collect();

@@ -19,7 +19,7 @@ use std::collections::HashSet;
 use crate::model::Description;
 
 use couplings::{Couplings, Member};
-use extract::Asked;
+use extract::SubsystemQuestions;
 use questions::{Question, questions, tie};
 
 pub use extract::{narrow, required};
@@ -87,19 +87,21 @@ impl Reduction {
         }
         let questions = questions(description);
         let sets = sets_of_outputs(&mut couplings, &movable, &questions, choices);
-        let mut subsystems: Vec<(Option<usize>, Asked)> = Vec::new();
+        let mut subsystems: Vec<(Option<usize>, SubsystemQuestions)> = Vec::new();
         for (output, set) in sets.into_iter().enumerate() {
             match subsystems.iter_mut().find(|(known, _)| *known == set) {
                 Some((_, asked)) => asked.outputs.push(output),
-                None => subsystems.push((set, Asked::output(output))),
+                None => subsystems.push((set, SubsystemQuestions::output(output))),
             }
         }
         if subsystems.is_empty() {
             // A robot without joints has no outputs.
-            subsystems.push((movable.first().map(|&part| couplings.set(part)), Asked::default()));
+            subsystems.push((movable.first().map(|&part| couplings.set(part)), SubsystemQuestions::default()));
         }
         for (question, places) in questions {
-            let has = |(_, asked): &(_, Asked)| places.first().is_some_and(|index| asked.outputs.contains(index));
+            let has = |(_, asked): &(_, SubsystemQuestions)| {
+                places.first().is_some_and(|index| asked.outputs.contains(index))
+            };
             // Outputs of parameters alone belong to the first subsystem.
             let index = subsystems.iter().position(has).unwrap_or(0);
             match question {

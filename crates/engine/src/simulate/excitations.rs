@@ -18,7 +18,7 @@ use crate::numerics::Sample;
 
 /// A mode that is watched.
 #[derive(Clone, Debug)]
-pub struct Watched {
+pub struct WatchedMode {
     /// Mφ.
     pub weighted: Vec<f64>,
     /// ω, rad/s.
@@ -39,7 +39,7 @@ pub struct Excitation {
 pub fn excitations(
     simulator: &Simulator,
     schedule: &Schedule,
-    modes: &[Watched],
+    modes: &[WatchedMode],
     resolved: f64,
 ) -> Vec<Vec<Excitation>> {
     let nominal: Sample = simulator.system.parameters.iter().map(|parameter| parameter.nominal).collect();

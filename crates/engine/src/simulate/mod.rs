@@ -51,7 +51,7 @@ mod tuning;
 mod unmet_switch;
 mod visit;
 
-pub use adjoint::{Functional, Functions, Gradient, NoGradient, Term, Under, Wanted, gradients, gradients_under};
+pub use adjoint::{CellFunctions, Functional, Gradient, NoGradient, Term, Under, Wanted, gradients, gradients_under};
 pub use closure::{Closure, Configuration, Points, choose_independent};
 pub use control::{Controller, Divided, Integration, Schedule, Steps, ToleranceSchedule, schedule_for_tolerance};
 pub use diagnostics::{OpenConstraint, SingularPass, SingularWatch, TooDeep, overlapping};

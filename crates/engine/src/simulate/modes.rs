@@ -8,7 +8,7 @@ use nalgebra::{Complex, DMatrix, DVector, Dyn, Matrix3, SVD, SymmetricEigen, Vec
 use symdiff::{Expr, math, slopes};
 
 use super::control::Schedule;
-use super::excitations::{Excitation, Watched, excitations};
+use super::excitations::{Excitation, WatchedMode, excitations};
 use super::fast_states::{StateMode, of_states};
 use super::simulator::Simulator;
 use super::tuning::TUNING;
@@ -52,7 +52,7 @@ pub fn excited_modes(simulator: &Simulator, schedule: &Schedule) -> Vec<ExcitedM
         return Vec::new();
     }
     let linear = Linearised::at_start(simulator);
-    let (mut modes, watched): (Vec<ExcitedMode>, Vec<Watched>) =
+    let (mut modes, watched): (Vec<ExcitedMode>, Vec<WatchedMode>) =
         linear.modes(simulator, schedule.longest_step()).into_iter().unzip();
     let slower = modes.len().saturating_sub(TUNING.most_watched);
     if !watched.is_empty() {
@@ -127,14 +127,14 @@ impl Linearised {
 
     /// Those of the mechanism with its states held, and those of the states with the mechanism held: together their
     /// equations have no symmetric matrices.
-    fn modes(&self, simulator: &Simulator, h: f64) -> Vec<(ExcitedMode, Watched)> {
+    fn modes(&self, simulator: &Simulator, h: f64) -> Vec<(ExcitedMode, WatchedMode)> {
         let mut modes = self.modes_of_mechanism(simulator, h).unwrap_or_default();
         modes.extend(self.modes_of_states(simulator, h));
         modes.sort_by(|(a, _), (b, _)| a.frequency.total_cmp(&b.frequency));
         modes
     }
 
-    fn modes_of_states(&self, simulator: &Simulator, h: f64) -> Vec<(ExcitedMode, Watched)> {
+    fn modes_of_states(&self, simulator: &Simulator, h: f64) -> Vec<(ExcitedMode, WatchedMode)> {
         let count = self.states.len();
         let block = |matrix: &DMatrix<f64>| {
             DMatrix::from_fn(count, count, |row, column| matrix[(self.states[row], self.states[column])])
@@ -158,13 +158,13 @@ impl Linearised {
                 excitations: vec![Excitation { time: 0.0, amplitude: mode.amplitude }],
                 in_outputs: (0..by_v.nrows()).map(of_output).collect(),
             };
-            (excited, Watched { weighted: vec![0.0; self.mass.nrows()], frequency })
+            (excited, WatchedMode { weighted: vec![0.0; self.mass.nrows()], frequency })
         };
         found.into_iter().filter(|mode| size(mode.value) * h > TUNING.slowest_watched).map(of_mode).collect()
     }
 
     /// `None` where M is not positive on the motions that the constraints allow.
-    fn modes_of_mechanism(&self, simulator: &Simulator, h: f64) -> Option<Vec<(ExcitedMode, Watched)>> {
+    fn modes_of_mechanism(&self, simulator: &Simulator, h: f64) -> Option<Vec<(ExcitedMode, WatchedMode)>> {
         let allowed = self.allowed_motions()?;
         let on_allowed = |matrix: &DMatrix<f64>| allowed.transpose() * matrix * &allowed;
         let symmetric = |matrix: DMatrix<f64>| (&matrix + matrix.transpose()) * 0.5;
@@ -203,7 +203,7 @@ impl Linearised {
         h: f64,
         coefficients: Coefficients,
         constraints: Option<&SVD<f64, Dyn, Dyn>>,
-    ) -> (ExcitedMode, Watched) {
+    ) -> (ExcitedMode, WatchedMode) {
         let weighted = &self.mass * shape;
         let by_acceleration = weighted.dot(&self.acceleration) / (omega * omega);
         let amplitude = math::hypot(by_acceleration, weighted.dot(&self.velocity) / omega);
@@ -224,7 +224,7 @@ impl Linearised {
             excitations: vec![Excitation { time: 0.0, amplitude }],
             in_outputs,
         };
-        (mode, Watched { weighted: weighted.iter().copied().collect(), frequency: omega })
+        (mode, WatchedMode { weighted: weighted.iter().copied().collect(), frequency: omega })
     }
 
     /// A basis of the motions with Φ_q δq = 0 of which no state is a part: columns.

@@ -60,7 +60,7 @@ pub struct Reader<'d, S> {
     /// Lengths of which some may be in another unit.
     pub lengths: Lengths,
     /// Functions that the file gives by their values.
-    pub tables: Vec<Table>,
+    pub tables: Vec<FunctionTable>,
 }
 
 /// Lengths of a model seen so far.
@@ -76,7 +76,7 @@ pub struct Lengths {
 
 /// A function that is given by its values.
 #[derive(Clone, Debug)]
-pub struct Table {
+pub struct FunctionTable {
     /// Name of the function.
     pub name: String,
     /// Interpolation of its values.

@@ -18,7 +18,7 @@ use crate::syntax::diagnostic::{Diagnostic, Diagnostics};
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};
 use crate::syntax::tuning::TUNING;
-use crate::syntax::within::Within;
+use crate::syntax::within::AllowedFolders;
 use crate::syntax::yaml::{Entry, Node, Scalar, Value};
 
 /// Errors and warnings of a model, and the files that it may name.
@@ -26,7 +26,7 @@ pub struct Report<'d> {
     /// Errors and warnings so far.
     pub diagnostics: &'d mut Diagnostics,
     /// Where files are that the model may name.
-    pub files: Within,
+    pub files: AllowedFolders,
     /// Names and formulas that were read, where an editor asks for them.
     pub mentions: Option<&'d Notes>,
 }

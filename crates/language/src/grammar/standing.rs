@@ -7,7 +7,7 @@ use symdiff::{Formula, Unary};
 
 use super::reader::Reader;
 use super::symbols::{Coordinate, JointCoordinate, Symbol, SymbolTable, TimeOrder};
-use crate::syntax::frame::{Frame, PLACE, Turned, signed};
+use crate::syntax::frame::{InstanceFrame, PLACE, Turned, signed};
 use crate::syntax::scope::Scope;
 use crate::syntax::yaml::Node;
 
@@ -22,7 +22,7 @@ impl<S: SymbolTable> Reader<'_, S> {
 
     /// What a name of an instance is in the model, where that is something else; `place` stands before the names of
     /// the frame.
-    fn of_model(&self, name: &str, frame: Frame, place: &str) -> Option<Formula> {
+    fn of_model(&self, name: &str, frame: InstanceFrame, place: &str) -> Option<Formula> {
         let text = match self.symbol(name)? {
             Symbol::JointCoordinate { coordinate: JointCoordinate::Angle, .. } if frame.mirrors.is_odd() => {
                 return Some(Formula::name(name).applied(Unary::Neg));

@@ -6,7 +6,7 @@ use std::fmt;
 use serde::Serialize;
 
 use super::codes::{Code, Coded};
-use super::source::{Sources, Span, Within};
+use super::source::{Sources, Span, TextInstance};
 
 /// How bad it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
@@ -136,7 +136,7 @@ impl Diagnostics {
             return;
         }
         let mut place = diagnostic.span.clone();
-        while let Some(Within { instance, of, span }) = place.and_then(|place| self.sources.within(&place)) {
+        while let Some(TextInstance { instance, of, span }) = place.and_then(|place| self.sources.within(&place)) {
             diagnostic.secondary.push((span.clone(), format!("in `{instance}`, an instance of `{of}`")));
             place = Some(span.clone());
         }

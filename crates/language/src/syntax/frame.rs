@@ -7,11 +7,11 @@
 use super::mirrors::Mirrors;
 
 /// Three components, or rows of them, as text.
-pub type Vector = [String; 3];
+pub type TextVector = [String; 3];
 
 /// How an instance stands; only nonzero parts of the placement have parameters.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Frame {
+pub struct InstanceFrame {
     /// D
     pub mirrors: Mirrors,
     /// Components of g that are not zero.
@@ -38,7 +38,7 @@ pub const PLACE: &str = "at.model.";
 /// Names of the components of g.
 const POSITION: [&str; 3] = ["x", "y", "z"];
 
-impl Frame {
+impl InstanceFrame {
     /// A frame within this one, of which `moved` and `turned` are in this one's axes.
     #[must_use]
     pub fn within(self, inner: Self) -> Self {
@@ -63,7 +63,7 @@ impl Frame {
     }
 
     /// g; `place` stands before the names.
-    pub fn origin(self, place: &str) -> Vector {
+    pub fn origin(self, place: &str) -> TextVector {
         [0, 1, 2].map(|axis| if self.moved[axis] { format!("{place}{}", POSITION[axis]) } else { "0".to_owned() })
     }
 
@@ -77,7 +77,7 @@ impl Frame {
     }
 
     /// The rows of R.
-    pub fn rotation(self, place: &str) -> [Vector; 3] {
+    pub fn rotation(self, place: &str) -> [TextVector; 3] {
         if self.turned != Turned::InSpace {
             let [cos, sin, minus] = match self.turned {
                 Turned::ByAngle => {
@@ -103,12 +103,12 @@ impl Frame {
     }
 
     /// R v, of a vector with its signs.
-    pub fn turn(self, place: &str, vector: &Vector) -> Vector {
+    pub fn turn(self, place: &str, vector: &TextVector) -> TextVector {
         self.rotation(place).map(|row| dot(&row, vector))
     }
 
     /// A component of D Rᵀ v.
-    pub fn turn_back(self, place: &str, vector: &Vector, axis: usize) -> String {
+    pub fn turn_back(self, place: &str, vector: &TextVector, axis: usize) -> String {
         let rows = self.rotation(place);
         signed(&dot(&[0, 1, 2].map(|row| rows[row][axis].clone()), vector), self.mirrors.flips(axis))
     }
@@ -163,6 +163,6 @@ pub fn signed(text: &str, is_negative: bool) -> String {
     if is_negative && text != "0" { format!("-({text})") } else { text.to_owned() }
 }
 
-fn dot(a: &Vector, b: &Vector) -> String {
+fn dot(a: &TextVector, b: &TextVector) -> String {
     sum([0, 1, 2].map(|axis| times(&a[axis], &b[axis])).iter())
 }

@@ -8,7 +8,7 @@ use annotate_snippets::{Annotation, AnnotationKind, Group, Level, Origin, Render
 use super::diagnostic::{Diagnostic, Diagnostics, Severity};
 use super::habit::{Habit, owner};
 use super::harmless::{harmless, is_harmful};
-use super::source::{Place, Source};
+use super::source::{LineColumn, Source};
 use crate::syntax::tuning::TUNING;
 
 /// Begins a colour; what comes from a file cannot hold it where it reaches the renderer.
@@ -190,7 +190,7 @@ impl<'d> Excerpt<'d> {
         let last = self.marks.iter().map(|mark| mark.span.end).max().unwrap_or(0);
         let name = self.source.name.as_str();
         let mark = self.marks.first().map_or(0, |mark| mark.span.start);
-        let Place { line, column } = self.source.place(mark);
+        let LineColumn { line, column } = self.source.place(mark);
         let start = text[..first].rfind('\n').map_or(0, |newline| newline + 1);
         let end = text[last..].find('\n').map_or(text.len(), |newline| last + newline);
         // Very long lines are cut near the marks.

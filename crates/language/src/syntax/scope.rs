@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use symdiff::formula::indices::{self, Index};
 
-use super::frame::Frame;
+use super::frame::InstanceFrame;
 
 /// The instance and the indices of a copy.
 ///
@@ -25,7 +25,7 @@ pub struct Scope {
     /// Whether the number has the other sign, in a mirror.
     is_negated: bool,
     /// How the instance stands in the model, if that is not as its assembly is written.
-    frame: Option<Frame>,
+    frame: Option<InstanceFrame>,
 }
 
 /// Bodies that do not move.
@@ -44,12 +44,12 @@ impl Scope {
 
     /// The same, standing so.
     #[must_use]
-    pub fn standing(self, frame: Option<Frame>) -> Self {
+    pub fn standing(self, frame: Option<InstanceFrame>) -> Self {
         Self { frame, ..self }
     }
 
     /// How the instance stands in the model, if that is not as its assembly is written.
-    pub fn frame(&self) -> Option<Frame> {
+    pub fn frame(&self) -> Option<InstanceFrame> {
         self.frame
     }
 

@@ -24,7 +24,7 @@ pub struct Source {
 
 /// A place as people count it, both from 1; columns are characters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Place {
+pub struct LineColumn {
     /// From 1.
     pub line: usize,
     /// In characters, from 1.
@@ -33,10 +33,10 @@ pub struct Place {
 
 impl Source {
     /// The place of a byte of this source; `offset` counts from the source's own start.
-    pub fn place(&self, offset: usize) -> Place {
+    pub fn place(&self, offset: usize) -> LineColumn {
         let offset = floor_char_boundary(&self.text, offset);
         let line = self.lines.partition_point(|&start| start <= offset);
-        Place { line, column: self.text[self.lines[line - 1]..offset].chars().count() + 1 }
+        LineColumn { line, column: self.text[self.lines[line - 1]..offset].chars().count() + 1 }
     }
 }
 
@@ -46,12 +46,12 @@ struct Placed {
     /// Offset of its first byte.
     start: usize,
     source: Arc<Source>,
-    within: Option<Within>,
+    within: Option<TextInstance>,
 }
 
 /// The instance of which a copy of a text is.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Within {
+pub struct TextInstance {
     /// Its full name.
     pub instance: String,
     /// Assembly of the instance.
@@ -82,13 +82,13 @@ impl Sources {
 
     /// Places the text of a span once more, for a copy of it: how far the copy's spans lie behind those of the
     /// original.
-    pub fn copy(&mut self, original: &Span, within: Within) -> usize {
+    pub fn copy(&mut self, original: &Span, within: TextInstance) -> usize {
         let Some(placed) = self.placed(original) else { return 0 };
         let (first, source) = (placed.start, Arc::clone(&placed.source));
         self.place_at_end(source, Some(within)) - first
     }
 
-    fn place_at_end(&mut self, source: Arc<Source>, within: Option<Within>) -> usize {
+    fn place_at_end(&mut self, source: Arc<Source>, within: Option<TextInstance>) -> usize {
         // One offset lies between two texts, so that the end of one is not the start of the next.
         let start = self.all.last().map_or(0, |last| last.start + last.source.text.len() + 1);
         self.all.push(Placed { start, source, within });
@@ -111,7 +111,7 @@ impl Sources {
     }
 
     /// The instance in whose copy a span is.
-    pub fn within(&self, span: &Span) -> Option<&Within> {
+    pub fn within(&self, span: &Span) -> Option<&TextInstance> {
         self.placed(span)?.within.as_ref()
     }
 
@@ -145,7 +145,7 @@ mod tests {
         assert_eq!(second, 8);
         let (source, span) = sources.locate(&(6..7)).unwrap();
         assert_eq!((source.name.as_str(), &source.text[span.clone()]), ("a", "!"));
-        assert_eq!(source.place(span.start), Place { line: 2, column: 2 });
+        assert_eq!(source.place(span.start), LineColumn { line: 2, column: 2 });
         let (source, span) = sources.locate(&(8..100)).unwrap();
         assert_eq!((source.name.as_str(), span), ("b", 0..5));
         assert_eq!(sources.locate(&(7..7)).unwrap().0.name, "a");

@@ -12,7 +12,7 @@ use super::text_file::read_text;
 
 /// Folders whose files a model may name.
 #[derive(Clone, Debug)]
-pub struct Within {
+pub struct AllowedFolders {
     /// The model's: names are from it.
     folder: PathBuf,
     /// That of `--root`.
@@ -45,7 +45,7 @@ impl OpenTexts {
     }
 }
 
-impl Within {
+impl AllowedFolders {
     /// For the model of a path.
     pub fn of(model: &Path, root: Option<&Path>) -> Self {
         Self {
@@ -147,7 +147,7 @@ mod tests {
         }
         let model = robots.join("model.yaml");
         let found = |root: Option<&Path>, name: &str| {
-            let within = Within::of(&model, root);
+            let within = AllowedFolders::of(&model, root);
             within.find(Path::new("parts"), name).map(|path| path.display().to_string()).map_err(|error| error.message)
         };
         let alone = |name: &str| found(None, name);

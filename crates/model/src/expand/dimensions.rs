@@ -20,12 +20,12 @@ pub struct Chain {
     /// The output: the closing dimension, from the first link's beginning to the last one's end.
     pub output: String,
     /// The dimensions on the way, one after another.
-    pub links: Vec<Link>,
+    pub links: Vec<ChainLink>,
 }
 
 /// A dimension of a chain.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Link {
+pub struct ChainLink {
     /// The parameter, or the output where the dimension is a formula.
     pub name: String,
     /// The face where the way enters.
@@ -161,7 +161,7 @@ fn without_faces(entry: &Entry) -> Node {
 /// The output of a closing dimension: the signed sum of its links.
 fn closing(entry: &Entry, chain: &Chain) -> Node {
     let mut sum = String::new();
-    for Link { name, is_forward, .. } in &chain.links {
+    for ChainLink { name, is_forward, .. } in &chain.links {
         sum += match (is_forward, sum.is_empty()) {
             (true, true) => "",
             (true, false) => " + ",
@@ -253,7 +253,7 @@ impl<'f, 'n> Forest<'f, 'n> {
         let mut links = Vec::with_capacity(path.len());
         for (edge, end) in path {
             let dimension = &self.dimensions[edge];
-            links.push(Link {
+            links.push(ChainLink {
                 name: dimension.entry.key.clone(),
                 from: self.faces.names[at].clone(),
                 to: self.faces.names[end].clone(),

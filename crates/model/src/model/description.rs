@@ -20,13 +20,13 @@ use symdiff::Formula;
 
 use crate::elements::JointKind;
 use crate::elements::effects::EffectKind;
-pub use crate::expand::dimensions::{Chain, Link};
+pub use crate::expand::dimensions::{Chain, ChainLink};
 pub use crate::expand::instance::{Instance, InstanceKind};
 pub use crate::expand::zones::{Zone, ZoneLaw, ZoneShape};
 use crate::grammar::display_unit::DisplayUnit;
 use crate::grammar::quantity::Dimension;
 use crate::methods::BoundsRequest;
-pub use crate::robots::urdf::robot::{Shape, Visual};
+pub use crate::robots::urdf::robot::{Visual, VisualShape};
 pub use analysis::{Analysis, LinearisedAt, ModesRequest, ResponseRequest};
 pub use black_box::{BlackBox, BoxOutput, FmuProgram, Program, Protocol, Refine};
 pub use body::{Body, FlexibleBeam, Inertia, Point, Standing};

@@ -26,7 +26,7 @@ use crate::syntax::diagnostic::{Diagnostic, Diagnostics};
 use crate::syntax::source::Span;
 use crate::syntax::text_file::{read_given, text_of};
 use crate::syntax::tuning::TUNING;
-use crate::syntax::within::Within;
+use crate::syntax::within::AllowedFolders;
 use crate::syntax::yaml::{self, Entry, Node};
 use crate::syntax::{Code, harmless};
 
@@ -105,11 +105,11 @@ pub fn read_str(name: &str, text: &str, overrides: &[Override]) -> Reading {
 }
 
 fn read_text_of(name: &str, text: &str, overrides: &[Override], root: Option<&Path>) -> Reading {
-    read_from(Origin::of(name, Within::of(Path::new(name), root), None), text, overrides)
+    read_from(ModelOrigin::of(name, AllowedFolders::of(Path::new(name), root), None), text, overrides)
 }
 
 /// Reads a model from text that comes from somewhere.
-pub(super) fn read_from(origin: Origin, text: &str, overrides: &[Override]) -> Reading {
+pub(super) fn read_from(origin: ModelOrigin, text: &str, overrides: &[Override]) -> Reading {
     let name = origin.name;
     let mut diagnostics = Diagnostics::new(name, text);
     let mut placed = Vec::new();
@@ -162,7 +162,7 @@ pub(super) fn read_from(origin: Origin, text: &str, overrides: &[Override]) -> R
         // Missing keys of the tree would be reported again.
         return Reading { description: None, scenes: Vec::new(), diagnostics };
     }
-    let origin = Origin { chains, zones, ..origin };
+    let origin = ModelOrigin { chains, zones, ..origin };
     let plan = Scenes::read(&mut origin.report(&mut diagnostics), &root);
     let before = diagnostics.len();
     let model = plan.model();
@@ -188,11 +188,11 @@ pub(super) fn read_from(origin: Origin, text: &str, overrides: &[Override]) -> R
 }
 
 /// Where a model comes from.
-pub(super) struct Origin<'o> {
+pub(super) struct ModelOrigin<'o> {
     /// What diagnostics call it.
     name: &'o str,
     /// Files that it may name.
-    files: Within,
+    files: AllowedFolders,
     /// Chains of its dimensions.
     chains: Vec<Chain>,
     /// Its zones.
@@ -201,9 +201,9 @@ pub(super) struct Origin<'o> {
     mentions: Option<&'o Notes>,
 }
 
-impl<'o> Origin<'o> {
+impl<'o> ModelOrigin<'o> {
     /// Of a text, whose dimensions and zones are not read yet.
-    pub(super) fn of(name: &'o str, files: Within, mentions: Option<&'o Notes>) -> Self {
+    pub(super) fn of(name: &'o str, files: AllowedFolders, mentions: Option<&'o Notes>) -> Self {
         Self { name, files, chains: Vec::new(), zones: Vec::new(), mentions }
     }
 
@@ -225,7 +225,7 @@ impl<'o> Origin<'o> {
 /// Reads every section, what others refer to before what refers to it; the warnings are of parameters that are used
 /// nowhere.
 fn describe(
-    origin: &Origin,
+    origin: &ModelOrigin,
     variant: &Variant,
     parts: Option<&Parts>,
     overrides: &[(Override, Span)],

@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use super::load::{Origin, read_from, read_rooted, robot_alone, shown};
+use super::load::{ModelOrigin, read_from, read_rooted, robot_alone, shown};
 use super::reading::Reading;
 use crate::grammar::mentions::{Mentions, Notes};
-use crate::syntax::within::{OpenTexts, Within};
+use crate::syntax::within::{AllowedFolders, OpenTexts};
 
 /// A model that is open in an editor.
 #[derive(Clone, Debug)]
@@ -22,11 +22,11 @@ pub fn read_open(path: &Path, open: &OpenTexts, root: Option<&Path>) -> Opened {
         return Opened { reading: read_rooted(path, &[], root), mentions: Mentions::default() };
     };
     let (name, notes) = (shown(path), Notes::default());
-    let files = Within::of(path, root).with_open(open);
+    let files = AllowedFolders::of(path, root).with_open(open);
     // The text of the model of a robot is nobody's: names have no places in it.
     let reading = match robot_alone(path) {
-        Some(model) => read_from(Origin::of(&name, files, None), &model, &[]),
-        None => read_from(Origin::of(&name, files, Some(&notes)), text, &[]),
+        Some(model) => read_from(ModelOrigin::of(&name, files, None), &model, &[]),
+        None => read_from(ModelOrigin::of(&name, files, Some(&notes)), text, &[]),
     };
     Opened { reading, mentions: notes.into_inner() }
 }

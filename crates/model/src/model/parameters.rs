@@ -39,7 +39,7 @@ fn is_of_robot(name: &str) -> bool {
 }
 
 /// A parameter between its text and its value.
-pub(super) struct Draft {
+pub(super) struct ParameterDraft {
     spec: Spec,
     name_span: Span,
     unit: Option<Unit>,
@@ -86,7 +86,7 @@ pub(super) fn read(reader: &mut Reader, entries: &[Entry], overrides: &[(Overrid
     }
     reader.used = vec![false; entries.len()];
     reader.kinds = vec![KnownDimension::Any; entries.len()];
-    let mut drafts: Vec<Draft> =
+    let mut drafts: Vec<ParameterDraft> =
         entries.iter().enumerate().map(|(index, entry)| draft(reader, entry, replaced.get(&index).copied())).collect();
     dependent::add_deviations(reader, &mut drafts, overrides);
     let order = order::in_order(reader, &drafts);
@@ -104,7 +104,7 @@ pub(super) fn read(reader: &mut Reader, entries: &[Entry], overrides: &[(Overrid
     riding
 }
 
-fn riding(name: &str, draft: &Draft) -> Riding {
+fn riding(name: &str, draft: &ParameterDraft) -> Riding {
     let Spec { tolerance, plus, minus, class, .. } = &draft.spec;
     let is_share = |node: &Node| {
         node.scalar().and_then(|scalar| number_and_unit(&scalar.text)).is_some_and(|(_, unit, _)| unit == "%")
@@ -137,7 +137,7 @@ fn find_overrides<'o>(
 }
 
 /// A parameter's text, with its unit and its formula read.
-fn draft(reader: &mut Reader, entry: &Entry, replaced: Option<&Override>) -> Draft {
+fn draft(reader: &mut Reader, entry: &Entry, replaced: Option<&Override>) -> ParameterDraft {
     let name_span = entry.key_span.clone();
     let mut spec = Spec::read(reader, entry);
     if let Some(wanted) = replaced.filter(|wanted| notation::fits(reader, &wanted.value, &entry.value)) {
@@ -165,7 +165,7 @@ fn draft(reader: &mut Reader, entry: &Entry, replaced: Option<&Override>) -> Dra
             })
             .collect();
     }
-    Draft { spec, name_span, unit, value, uses, deviation: None }
+    ParameterDraft { spec, name_span, unit, value, uses, deviation: None }
 }
 
 /// A unit by its name.
@@ -181,7 +181,7 @@ pub(super) fn unit(reader: &mut Reader, node: &Node) -> Option<Unit> {
 }
 
 /// Gives the parameter its value, its unit and its dimension; those it uses have theirs.
-fn finish(reader: &mut Reader, draft: &Draft, index: usize, values: &mut [f64]) {
+fn finish(reader: &mut Reader, draft: &ParameterDraft, index: usize, values: &mut [f64]) {
     let (value, mut kind) = match (&draft.value, &draft.spec.value) {
         (Some(written), Some(node)) => match nominal(reader, draft, written, node) {
             Some((formula, kind)) => (Some(formula), kind),
@@ -230,22 +230,29 @@ fn finish(reader: &mut Reader, draft: &Draft, index: usize, values: &mut [f64]) 
 }
 
 /// Nominal value and limits as the file has them, where they are numbers that were replaced and a law of them stays.
-fn written(reader: &mut Reader, draft: &Draft, kind: &mut KnownDimension) -> Option<[f64; 3]> {
+fn written(reader: &mut Reader, draft: &ParameterDraft, kind: &mut KnownDimension) -> Option<[f64; 3]> {
     let before = draft.spec.before.as_ref()?;
     let value = before.value.as_ref().and_then(|node| reader.written(node));
     let nominal = match (&value, &before.value) {
         (Some(written), Some(node)) => Some(nominal(reader, draft, written, node)?.0.as_number()?),
         _ => None,
     };
-    let Draft { name_span, unit, .. } = draft;
+    let ParameterDraft { name_span, unit, .. } = draft;
     let mut spec = (**before).clone();
     spec.unit.clone_from(&draft.spec.unit);
-    let own = Draft { spec, name_span: name_span.clone(), unit: *unit, value, uses: Vec::new(), deviation: None };
+    let own =
+        ParameterDraft { spec, name_span: name_span.clone(), unit: *unit, value, uses: Vec::new(), deviation: None };
     interval::bounds(reader, &own, nominal, kind)
 }
 
 /// Reads the law of an uncertain parameter, and what its tolerance costs.
-fn says_more(reader: &mut Reader, draft: &Draft, index: usize, place: law::LawInterval, kind: &mut KnownDimension) {
+fn says_more(
+    reader: &mut Reader,
+    draft: &ParameterDraft,
+    index: usize,
+    place: law::LawInterval,
+    kind: &mut KnownDimension,
+) {
     let name = reader.model.parameters[index].name.clone();
     if let Some(node) = &draft.spec.distribution {
         let law = law::read(reader, draft, node, place, kind);
@@ -259,7 +266,7 @@ fn says_more(reader: &mut Reader, draft: &Draft, index: usize, place: law::LawIn
 }
 
 /// Notes a parameter's dimension and unit.
-fn settle(reader: &mut Reader, draft: &Draft, index: usize, kind: KnownDimension) {
+fn settle(reader: &mut Reader, draft: &ParameterDraft, index: usize, kind: KnownDimension) {
     reader.kinds[index] = kind;
     if let Some(unit) = written_unit(draft) {
         reader.model.parameter_units.insert(reader.model.parameters[index].name.clone(), unit);
@@ -273,7 +280,7 @@ fn settle(reader: &mut Reader, draft: &Draft, index: usize, kind: KnownDimension
 }
 
 /// The unit that is declared, or that stands behind the value; `None` where it is of SI.
-fn written_unit(draft: &Draft) -> Option<DisplayUnit> {
+fn written_unit(draft: &ParameterDraft) -> Option<DisplayUnit> {
     let text = |node: &Option<Node>| Some(node.as_ref()?.scalar()?.text.clone());
     let (unit, text) = match (draft.unit, &draft.value) {
         (Some(unit), _) => (unit, text(&draft.spec.unit)?),
@@ -286,7 +293,12 @@ fn written_unit(draft: &Draft) -> Option<DisplayUnit> {
 }
 
 /// The value in SI and its dimension.
-fn nominal(reader: &mut Reader, draft: &Draft, written: &Written, node: &Node) -> Option<(Formula, KnownDimension)> {
+fn nominal(
+    reader: &mut Reader,
+    draft: &ParameterDraft,
+    written: &Written,
+    node: &Node,
+) -> Option<(Formula, KnownDimension)> {
     match (written, draft.unit) {
         (Written::Quantity { value, unit }, declared) => {
             if let Some(declared) = declared {

@@ -4,7 +4,7 @@ use symdiff::{Binary, Formula, Unary};
 
 use super::description::{ReducedKind, ReducedOutput};
 use super::display;
-use super::results_by_name::{self, RESULTS, Source};
+use super::results_by_name::{self, DimensionedFormula, RESULTS};
 use crate::grammar::dimension::KnownDimension;
 use crate::grammar::names::Context;
 use crate::grammar::quantity::Dimension;
@@ -230,7 +230,7 @@ fn straightness(reader: &mut Reader, fields: &Fields, node: &Node) -> Option<(Ve
 }
 
 /// A formula of everything and of outputs by their names, which refers to the motion.
-fn source(reader: &mut Reader, node: &Node) -> Option<Source> {
+fn source(reader: &mut Reader, node: &Node) -> Option<DimensionedFormula> {
     let found = formula_of_outputs(reader, node)?;
     if found.formula.names().next().is_none() {
         reader.error(Code::ConstantOutput, node.span.clone(), "constant output: it refers to no variable", None);
@@ -248,13 +248,13 @@ fn like(reader: &mut Reader, node: &Node, wanted: Option<Dimension>) -> Option<F
 }
 
 /// A formula of everything and of outputs by their names.
-pub(super) fn formula_of_outputs(reader: &mut Reader, node: &Node) -> Option<Source> {
+pub(super) fn formula_of_outputs(reader: &mut Reader, node: &Node) -> Option<DimensionedFormula> {
     let length = reader.scalar(node, "a formula")?.text.len();
     part(reader, node, 0..length)
 }
 
 /// The formula in a part of a scalar.
-fn part(reader: &mut Reader, node: &Node, range: std::ops::Range<usize>) -> Option<Source> {
+fn part(reader: &mut Reader, node: &Node, range: std::ops::Range<usize>) -> Option<DimensionedFormula> {
     let scalar = reader.scalar(node, "a formula")?;
     let parsed = reader.parse(node, scalar, range.clone())?;
     if results_by_name::are_named(&reader.model, parsed.names().map(|(name, _)| name)) {
@@ -269,12 +269,12 @@ fn part(reader: &mut Reader, node: &Node, range: std::ops::Range<usize>) -> Opti
         KnownDimension::Known { dimension, .. } => Some(dimension),
         KnownDimension::Number(_) | KnownDimension::Any => None,
     };
-    Some(Source { formula, dimension })
+    Some(DimensionedFormula { formula, dimension })
 }
 
 /// Two formulas that are compared.
 pub(super) struct Comparison {
-    pub sides: [Source; 2],
+    pub sides: [DimensionedFormula; 2],
     /// Whether the left side is to be the smaller one.
     pub is_upper: bool,
 }

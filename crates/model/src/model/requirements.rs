@@ -4,7 +4,7 @@ use symdiff::{Binary, Formula, Unary};
 
 use super::description::{Limit, Requirement};
 use super::reduced;
-use super::results_by_name::{self, REDUCED, Source};
+use super::results_by_name::{self, DimensionedFormula, REDUCED};
 use crate::grammar::display_unit::DisplayUnit;
 use crate::grammar::quantity::Dimension;
 use crate::grammar::report::Fields;
@@ -17,8 +17,8 @@ use crate::syntax::yaml::{Entry, Node, Value};
 struct Limited {
     /// The limited quantity, as it is written.
     of: String,
-    own: Source,
-    limit: Source,
+    own: DimensionedFormula,
+    limit: DimensionedFormula,
     is_upper: bool,
 }
 
@@ -113,7 +113,7 @@ fn of_mapping(reader: &mut Reader, entry: &Entry) -> Option<Requirement> {
 }
 
 /// A side of a comparison of reduced outputs, or of outputs over time.
-fn side(reader: &mut Reader, node: &Node, of_reduced: bool) -> Option<Source> {
+fn side(reader: &mut Reader, node: &Node, of_reduced: bool) -> Option<DimensionedFormula> {
     match of_reduced {
         true => {
             let length = reader.scalar(node, "a formula")?.text.len();
@@ -128,7 +128,7 @@ pub(super) fn distance_from_zero(reader: &mut Reader, entry: &Entry, is_upper: b
     let of = reader.scalar(&entry.value, "an output")?.text.trim().to_owned();
     let of_reduced = names_reduced(reader, &of);
     let own = side(reader, &entry.value, of_reduced)?;
-    let limit = Source { formula: Formula::number(0.0), dimension: own.dimension };
+    let limit = DimensionedFormula { formula: Formula::number(0.0), dimension: own.dimension };
     let limited = Limited { of: of.clone(), own, limit, is_upper };
     let found = required(reader, entry, of, vec![limited], of_reduced, (0.0, f64::INFINITY));
     Some(Requirement { limits: Vec::new(), ..found })

@@ -21,7 +21,7 @@ const STABILITY: &str = "stability";
 const GROWTH: &str = "growth";
 
 /// A formula that was read, with its dimension where that is known.
-pub(super) struct Source {
+pub(super) struct DimensionedFormula {
     pub formula: Formula,
     pub dimension: Option<Dimension>,
 }
@@ -126,7 +126,12 @@ pub(super) fn at_frequencies(model: &Description, formula: &Formula) -> Vec<Form
 }
 
 /// The formula of numbers and parameters in a part of a scalar.
-pub(super) fn part(reader: &mut Reader, node: &Node, range: Range<usize>, numbers: &Numbers) -> Option<Source> {
+pub(super) fn part(
+    reader: &mut Reader,
+    node: &Node,
+    range: Range<usize>,
+    numbers: &Numbers,
+) -> Option<DimensionedFormula> {
     let scalar = reader.scalar(node, "a formula")?;
     let formula: Formula = reader.parse(node, scalar, range.clone())?;
     if formula.names().any(|(name, _)| reader.is_unread_output(name)) {
@@ -164,5 +169,5 @@ pub(super) fn part(reader: &mut Reader, node: &Node, range: Range<usize>, number
         let part = range.start + mismatch.span.start..range.start + mismatch.span.end;
         reader.error(Code::WrongDimension, scalar.place(&node.span, part), mismatch.message, None);
     }
-    Some(Source { formula, dimension })
+    Some(DimensionedFormula { formula, dimension })
 }

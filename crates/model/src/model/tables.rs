@@ -3,7 +3,7 @@
 use symdiff::{Spline, SplineError};
 
 use super::parameters::unit;
-use crate::grammar::reader::Table;
+use crate::grammar::reader::FunctionTable;
 use crate::grammar::report::Fields;
 use crate::grammar::unit::Unit;
 use crate::keys;
@@ -26,7 +26,7 @@ pub fn read(reader: &mut Reader, entries: &[Entry]) {
     }
 }
 
-fn table(reader: &mut Reader, entry: &Entry) -> Option<Table> {
+fn table(reader: &mut Reader, entry: &Entry) -> Option<FunctionTable> {
     let fields = reader.fields::<keys::Table>(&entry.value, entry.key_span.clone())?;
     let units = units(reader, &fields)?;
     let points = match (fields.get("file"), fields.get("points")) {
@@ -76,7 +76,7 @@ fn table(reader: &mut Reader, entry: &Entry) -> Option<Table> {
     match spline {
         Ok(spline) => {
             let dimensions = units.map(|unit| unit.map(|unit| unit.dimension));
-            Some(Table { name: entry.key.clone(), spline, dimensions })
+            Some(FunctionTable { name: entry.key.clone(), spline, dimensions })
         }
         Err(error) => {
             let (message, place) = match error {

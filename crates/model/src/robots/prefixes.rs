@@ -9,7 +9,7 @@ use crate::robots::tuning::TUNING;
 const OWN: [&str; 2] = ["mbint", "xacro"];
 
 /// A text with more declarations, and where they were put in.
-pub struct Declared {
+pub struct WithPrefixes {
     pub text: String,
     /// Offset of the first byte.
     pub at: usize,
@@ -19,7 +19,7 @@ pub struct Declared {
 
 /// The text with a declaration of each prefix that another program's parts have without one; nothing where the first
 /// error of it is another.
-pub fn declared(text: &str, first: &Error, error_of: fn(&str) -> Option<Error>) -> Option<Declared> {
+pub fn declared(text: &str, first: &Error, error_of: fn(&str) -> Option<Error>) -> Option<WithPrefixes> {
     let at = name_end(text)?;
     let mut prefixes: Vec<String> = vec![foreign(first)?];
     loop {
@@ -28,7 +28,7 @@ pub fn declared(text: &str, first: &Error, error_of: fn(&str) -> Option<Error>) 
         let whole = format!("{}{declarations}{}", &text[..at], &text[at..]);
         match error_of(&whole).as_ref().and_then(foreign) {
             Some(prefix) if prefixes.len() < TUNING.xml_prefixes => prefixes.push(prefix),
-            _ => return Some(Declared { text: whole, at, length: declarations.len() }),
+            _ => return Some(WithPrefixes { text: whole, at, length: declarations.len() }),
         }
     }
 }

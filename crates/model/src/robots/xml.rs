@@ -5,7 +5,7 @@ use std::ops::Range;
 use roxmltree::{Attribute, Document, Node, ParsingOptions};
 
 use super::budget;
-use super::prefixes::{self, Declared};
+use super::prefixes::{self, WithPrefixes};
 use crate::robots::tuning::TUNING;
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::{Diagnostic, Diagnostics};
@@ -28,8 +28,8 @@ pub fn parse<'t>(
     start: usize,
     format: &str,
     diagnostics: &mut Diagnostics,
-) -> Option<(Document<'t>, Places)> {
-    let mut places = Places { start, at: 0, length: 0 };
+) -> Option<(Document<'t>, XmlSpans)> {
+    let mut places = XmlSpans { start, at: 0, length: 0 };
     if let Err((place, message)) = budget::check(text) {
         diagnostics.push(Diagnostic::error(Code::BadXml, places.span(place), message));
         return None;
@@ -38,9 +38,9 @@ pub fn parse<'t>(
     let mut document = document_of(text);
     let error_of = |text: &str| document_of(text).err();
     let declared = document.as_ref().err().and_then(|error| prefixes::declared(text, error, error_of));
-    if let Some(Declared { text: whole, at, length }) = declared {
+    if let Some(WithPrefixes { text: whole, at, length }) = declared {
         *held = whole;
-        (text, places) = (held.as_str(), Places { start, at, length });
+        (text, places) = (held.as_str(), XmlSpans { start, at, length });
         document = document_of(text);
     }
     match document {
@@ -58,7 +58,7 @@ fn document_of(text: &str) -> Result<Document<'_>, roxmltree::Error> {
 }
 
 /// What the parser says, with what would be right where that is known.
-fn syntax_error(text: &str, places: Places, format: &str, error: &roxmltree::Error) -> Diagnostic {
+fn syntax_error(text: &str, places: XmlSpans, format: &str, error: &roxmltree::Error) -> Diagnostic {
     let at = error.pos();
     let line = text.split_inclusive('\n').take(at.row.saturating_sub(1) as usize).map(str::len).sum::<usize>();
     let column: usize = text[line..].chars().take(at.col.saturating_sub(1) as usize).map(char::len_utf8).sum();
@@ -91,7 +91,7 @@ fn syntax_error(text: &str, places: Places, format: &str, error: &roxmltree::Err
 
 /// Places of a document's parts among the sources.
 #[derive(Clone, Copy)]
-pub struct Places {
+pub struct XmlSpans {
     /// Offset of the document's first byte.
     start: usize,
     /// Where declarations of prefixes were put in that the file does not have, and how many bytes.
@@ -99,7 +99,7 @@ pub struct Places {
     length: usize,
 }
 
-impl Places {
+impl XmlSpans {
     fn span(self, range: Range<usize>) -> Span {
         let in_file = |offset: usize| {
             let original = if offset < self.at + self.length { offset.min(self.at) } else { offset - self.length };

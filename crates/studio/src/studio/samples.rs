@@ -8,7 +8,7 @@ use super::desk::{Current, Desk};
 use super::questions::{Values, replaced};
 use super::requests::Asked;
 use crate::numerics::Sample;
-use crate::study::{self, Chosen, RunError, Sampled};
+use crate::study::{self, ChosenSamples, RunError, Sampled};
 
 /// Serves one model after the other, until the end.
 pub fn work(desk: &Desk) {
@@ -50,7 +50,7 @@ fn serve(
     let is_replaced = || desk.is_replaced(current.number);
     let options = study::Options { interrupted: &is_replaced, ..study::Options::default() };
     let at = |_| vec![wanted.lock().unwrap_or_else(PoisonError::into_inner).clone()];
-    study::sample(&current.description, &options, Chosen { count: 1, at: &at }, |trajectories| {
+    study::sample(&current.description, &options, ChosenSamples { count: 1, at: &at }, |trajectories| {
         while let Some(own) = asked.take().or_else(|| desk.samples.next(&is_replaced)) {
             if own.question.number != current.number {
                 own.answer(Err(replaced()));

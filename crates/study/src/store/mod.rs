@@ -21,7 +21,7 @@ use sha2::{Digest, Sha256};
 
 pub use error::{StoreError, without};
 pub use part::{PartReader, PartWriter};
-pub use plan::{Asked, AskedPoints, Plan, Shard, StudyFolder};
+pub use plan::{AskedPoints, Plan, Shard, StudyFolder, StudyRequest};
 pub use task::{ScanPart, Task};
 
 /// Version of the files of parts and tasks. Files of another version are not read.

@@ -22,14 +22,14 @@ pub struct Plan {
     /// Rounds planned so far; what a study asks for next may depend on the results of the round before.
     pub round: usize,
     /// Request of the study.
-    pub asked: Asked,
+    pub asked: StudyRequest,
     /// Simulations, by number of the shard.
     pub shards: Vec<Shard>,
 }
 
 /// Request of a study: the arguments of `mbint run` that decide results.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Asked {
+pub struct StudyRequest {
     /// Absolute paths of the models.
     pub models: Vec<PathBuf>,
     /// The models as they were named; results say that, and not where a machine has them.
@@ -159,7 +159,7 @@ impl StudyFolder {
     ///
     /// # Errors
     /// Where it cannot be written.
-    pub fn write(&self, round: usize, asked: Asked, shards: Vec<Shard>) -> Result<(), StoreError> {
+    pub fn write(&self, round: usize, asked: StudyRequest, shards: Vec<Shard>) -> Result<(), StoreError> {
         std::fs::create_dir_all(&self.0).map_err(|error| StoreError::io(&self.0, error))?;
         let plan = Plan { format: FORMAT, mbint: env!("CARGO_PKG_VERSION").to_owned(), round, asked, shards };
         let mut text = serde_json::to_vec_pretty(&plan)

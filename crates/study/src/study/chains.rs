@@ -27,7 +27,7 @@ pub(super) fn chains(description: &Description, bounds: &Bounds) -> Vec<ChainSum
             Some(parameter) => values.get(parameter).copied(),
             None => of_output(name)?.nominal.get(row).copied(),
         };
-        let link = |link: &crate::model::Link| LinkSummary {
+        let link = |link: &crate::model::ChainLink| LinkSummary {
             name: link.name.clone(),
             from: link.from.clone(),
             to: link.to.clone(),

@@ -27,12 +27,12 @@ pub struct Survey {
     /// How many of them fail.
     failing: usize,
     /// Where these lie, parameter by parameter, where that says something.
-    places: Vec<Place>,
+    places: Vec<FailureRange>,
 }
 
 /// Where samples fail along one parameter.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Place {
+pub struct FailureRange {
     /// Name of the parameter.
     parameter: String,
     /// Least and largest value of samples that fail.
@@ -46,7 +46,7 @@ impl fmt::Display for Survey {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { first, samples, failing, places } = self;
         write!(formatter, "{first}; so it is with {failing} of {samples} samples spread over the box")?;
-        let place = |Place { parameter, lower, upper, towards }: &Place| match towards {
+        let place = |FailureRange { parameter, lower, upper, towards }: &FailureRange| match towards {
             Some(end) => format!("mostly towards {parameter} = {end}"),
             None => format!("with {parameter} from {lower} to {upper}"),
         };
@@ -82,7 +82,7 @@ fn survey(study: &Study, first: SimulationError) -> Survey {
         let [lower, upper] = [range.lower, range.upper].map(|xi| domain.value(axis, xi));
         let parameter = study.simulator.system.parameters[axis].name.clone();
         let says = !(all && mean.abs() < TUNING.leans) && domain.half_width(axis) > 0.0;
-        says.then_some(Place { parameter, lower, upper, towards })
+        says.then_some(FailureRange { parameter, lower, upper, towards })
     };
     let places = (0..domain.dimension()).filter_map(place).collect();
     Survey { first, samples: points.len(), failing: failing.len(), places }

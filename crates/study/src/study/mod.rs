@@ -81,7 +81,7 @@ pub use internal::{InternalError, caught, record_panics};
 pub use motion::{Grip, Hand, Held, MotionOptions, Movable, REPORT_SIZE, report_motion};
 pub use price::{Allowance, Memory, Price};
 pub use ready::{COMPILING, Ready, built, equations, ready};
-pub use sample::{Chosen, Sampled, sample};
+pub use sample::{ChosenSamples, Sampled, sample};
 pub use shard::simulate_parts;
 pub use sources::sources;
 pub use structure::structure;

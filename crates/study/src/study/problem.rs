@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, OnceLock};
 
-use super::black_box::source::Source;
+use super::black_box::source::ProgramSource;
 use super::ensemble::{Motions, Progress, Stored};
 use super::reduced::Store;
 use super::{Options, RunError, zones};
@@ -33,7 +33,7 @@ pub(super) struct Study<'a> {
     /// Where simulations are stored, if they are.
     pub(super) stored: Option<Stored<'a>>,
     /// The program that answers instead of a mechanism, if one does.
-    pub(super) source: Option<Arc<Source>>,
+    pub(super) source: Option<Arc<ProgramSource>>,
 }
 
 /// What a subsystem is to its bounding methods.
@@ -94,7 +94,7 @@ impl<'a> Study<'a> {
             stage,
             interruption: Interruption::new(interrupted),
             stored: None,
-            source: Source::of(description).map(Arc::new),
+            source: ProgramSource::of(description).map(Arc::new),
         })
     }
 

@@ -19,7 +19,7 @@ use crate::simulate::SimulationError;
 
 /// Samples of the uncertain parameters, in the model's order, which are made when they are needed.
 #[derive(Clone, Copy)]
-pub struct Chosen<'c> {
+pub struct ChosenSamples<'c> {
     /// How many.
     pub count: usize,
     /// Some of them.
@@ -44,7 +44,7 @@ pub struct Trajectories<'t> {
     pub(super) subsystems: &'t [Subsystem],
     pub(super) steps: &'t [StepPlan],
     progress: &'t Progress<'t>,
-    chosen: Chosen<'t>,
+    chosen: ChosenSamples<'t>,
     /// Of each subsystem.
     pub(super) columns: Vec<Columns>,
     /// Names and units of the outputs.
@@ -63,7 +63,7 @@ pub struct Trajectories<'t> {
 pub fn sample<T: Send, E: From<RunError> + Send>(
     description: &Description,
     options: &Options,
-    chosen: Chosen,
+    chosen: ChosenSamples,
     write: impl FnOnce(&Trajectories) -> Result<T, E> + Send,
 ) -> Result<T, E> {
     let pool = pool(options.threads);

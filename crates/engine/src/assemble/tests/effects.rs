@@ -4,14 +4,14 @@ use super::model::{Model, formula, pair, vector};
 use super::numbers::{State, assert_close, output};
 use super::power::{potential_rate, power, two_bodies, value};
 use crate::grammar::{BodyRef, Components, Direction};
-use crate::model::force::Frame;
+use crate::model::force::ForceFrame;
 use crate::model::torque::{AboutAxes, TorqueOn};
 use crate::model::{Force, SpringDamper, Torque, TorsionalSpringDamper};
 
 #[test]
 fn a_force_has_the_power_of_its_point() {
     let mut m = two_bodies();
-    m.effect(Force { on: m.point("a.P"), value: Components(pair("3 + t", "-2*b.x")), frame: Frame::Ground });
+    m.effect(Force { on: m.point("a.P"), value: Components(pair("3 + t", "-2*b.x")), frame: ForceFrame::Ground });
     let system = m.build();
     let state = State::random(&system, 1);
     let force = [3.7, -2.0 * state.0[&system.q[3]]];
@@ -22,7 +22,7 @@ fn a_force_has_the_power_of_its_point() {
 #[test]
 fn a_force_in_the_body_turns_with_it() {
     let mut m = two_bodies();
-    m.effect(Force { on: m.point("a.P"), value: Components(pair("3", "-2")), frame: Frame::Body });
+    m.effect(Force { on: m.point("a.P"), value: Components(pair("3", "-2")), frame: ForceFrame::Body });
     let system = m.build();
     let state = State::random(&system, 2);
     let (sin, cos) = state.0[&system.q[2]].sin_cos();
@@ -38,7 +38,7 @@ fn a_torque_drives_one_body_against_the_other() {
         on: TorqueOn::Body(m.body_index("b")),
         from: Some(BodyRef(m.body_index("a"))),
         value: AboutAxes(vector(["0", "0", "4"])),
-        frame: Frame::Ground,
+        frame: ForceFrame::Ground,
     });
     let system = m.build();
     let state = State::random(&system, 3);
@@ -176,7 +176,7 @@ fn effects_may_speak_of_reactions() {
     m.body("a", "1", "1", "xya", &[("P", "1", "0")]);
     m.revolute("pin", "ground", "a.P");
     let friction = vector(["0", "0", "-0.01*pin.force*tanh(100*a.angular_velocity)"]);
-    m.effect(Torque { on: TorqueOn::Body(1), from: None, value: AboutAxes(friction), frame: Frame::Ground });
+    m.effect(Torque { on: TorqueOn::Body(1), from: None, value: AboutAxes(friction), frame: ForceFrame::Ground });
     let system = m.build();
     let symbols = system.graph.symbols_of(&[system.force[2]]);
     assert!(system.lambda.iter().all(|lambda| symbols.contains(lambda)));

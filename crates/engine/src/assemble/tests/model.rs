@@ -6,7 +6,7 @@ use crate::assemble::{self, System};
 use crate::elements::joints::Revolute;
 use crate::grammar::Axis;
 use crate::grammar::{Components, Direction};
-use crate::model::force::Frame;
+use crate::model::force::ForceFrame;
 use crate::model::torque::{AboutAxes, TorqueOn};
 use crate::model::*;
 
@@ -183,7 +183,7 @@ pub fn slider_crank() -> Model {
     m.revolute("pin", "crank.B", "rod.B");
     m.revolute("wrist", "rod.C", "slider");
     let value = AboutAxes(vector(["0", "0", "tau"]));
-    m.effect(Torque { on: TorqueOn::Body(1), from: None, value, frame: Frame::Ground });
+    m.effect(Torque { on: TorqueOn::Body(1), from: None, value, frame: ForceFrame::Ground });
     let spring = SpringDamper {
         between: m.between("ground", "slider"),
         along: Some(Direction(pair("1", "0"))),

@@ -6,7 +6,7 @@ use symdiff::Expr;
 use crate::assemble::System;
 use crate::elements::joints::*;
 use crate::grammar::{Axis, BodyRef, Components, Direction, PerAxis};
-use crate::model::force::Frame;
+use crate::model::force::ForceFrame;
 use crate::model::torque::{AboutAxes, TorqueOn};
 use crate::model::{Bushing, EffectKind, Force, Gravity, JointKind, Rotation, SpringDamper, Torque};
 
@@ -285,7 +285,7 @@ fn forces_and_torques_have_the_power_of_what_they_act_on() {
     let (push, twist) = (Vector3::new(3.0, -2.0, 1.5), Vector3::new(0.7, -1.1, 0.4));
     for in_body in [false, true] {
         let mut m = two_lumps();
-        let frame = if in_body { Frame::Body } else { Frame::Ground };
+        let frame = if in_body { ForceFrame::Body } else { ForceFrame::Ground };
         m.effect(Force { on: m.point("a.P"), value: Components(vector(["3", "-2", "1.5"])), frame });
         let value = AboutAxes(vector(["0.7", "-1.1", "0.4"]));
         m.effect(Torque { on: TorqueOn::Body(2), from: Some(BodyRef(1)), value, frame });

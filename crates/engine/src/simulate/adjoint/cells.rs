@@ -4,7 +4,7 @@ use super::tuning::TUNING;
 
 /// Functions of the time for gradients, each with its own.
 #[derive(Clone, Copy, Debug)]
-pub struct Functions<'f> {
+pub struct CellFunctions<'f> {
     /// Times at which cells end, s, ascending. Every step lies in one cell.
     pub ends: &'f [f64],
     /// Of each gradient, the inputs (two an excitation: level and slope) cell by cell.
@@ -23,7 +23,7 @@ pub(in crate::simulate) struct TileInputs {
 
 impl TileInputs {
     /// Those of some gradients, one a lane.
-    pub fn of(functions: &Functions<'_>, lanes: &[usize]) -> Self {
+    pub fn of(functions: &CellFunctions<'_>, lanes: &[usize]) -> Self {
         let cells = functions.ends.len();
         let inputs = functions.values.first().map_or(0, |values| values.len() / cells.max(1));
         let mut values = Vec::with_capacity(cells * inputs * lanes.len());

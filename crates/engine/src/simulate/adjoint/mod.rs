@@ -24,10 +24,10 @@ mod steps;
 mod tiles;
 pub(crate) mod tuning;
 
-pub use cells::Functions;
+pub use cells::CellFunctions;
 pub(in crate::simulate) use cells::{TileInputs, TileKernel};
 pub use functional::{Functional, Term, Wanted};
-pub(in crate::simulate) use path::{Path, Stepping};
+pub(in crate::simulate) use path::{Stepping, TilePath};
 pub(in crate::simulate) use rows::{LaneTerm, RowAdjoints};
 pub(in crate::simulate) use start::StartAdjoints;
 pub use tiles::{Gradient, NoGradient, Under, gradients, gradients_under};

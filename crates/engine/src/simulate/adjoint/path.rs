@@ -17,7 +17,7 @@ pub(in crate::simulate) trait Stepping {
 
 /// The path of a tile.
 #[derive(Debug)]
-pub(in crate::simulate) struct Path<S> {
+pub(in crate::simulate) struct TilePath<S> {
     stepping: S,
     steps: usize,
     /// Values of a state.
@@ -33,7 +33,7 @@ pub(in crate::simulate) struct Path<S> {
     unchanged: Vec<(usize, Vec<f64>)>,
 }
 
-impl<S: Stepping> Path<S> {
+impl<S: Stepping> TilePath<S> {
     /// Takes all steps; `visit` gets every state with the number of steps before it.
     pub fn new(stepping: S, steps: usize, visit: &mut dyn FnMut(usize, &[f64])) -> Self {
         let size = stepping.state().len();

@@ -14,7 +14,7 @@
 use symdiff::{Adjoints, Tile};
 
 use super::cells::{TileInputs, TileKernel};
-use super::path::{Path, Stepping};
+use super::path::{Stepping, TilePath};
 use super::start::StartAdjoints;
 use crate::compile::{Program, Tapes};
 use crate::simulate::sampling::{Instants, Sampling};
@@ -24,7 +24,7 @@ use crate::simulate::step::Stepper;
 
 /// A tile of samples that takes the steps of a list.
 #[derive(Debug)]
-pub(super) struct Steps<'s> {
+pub(super) struct TileSteps<'s> {
     simulator: &'s Simulator,
     stepper: Stepper<'s>,
     sampling: Option<Sampling<'s>>,
@@ -37,7 +37,7 @@ pub(super) struct Steps<'s> {
     inputs: Option<(&'s TileInputs, Assembly<'s>)>,
 }
 
-impl<'s> Steps<'s> {
+impl<'s> TileSteps<'s> {
     /// From an assembled tile.
     pub fn new(simulator: &'s Simulator, start: &Tile, steps: Vec<(f64, f64)>, inputs: Option<&'s TileInputs>) -> Self {
         let mut stepper = Stepper::new(&simulator.program, start);
@@ -76,7 +76,7 @@ impl<'s> Steps<'s> {
     }
 }
 
-impl Stepping for Steps<'_> {
+impl Stepping for TileSteps<'_> {
     fn state(&self) -> &[f64] {
         self.stepper.tile().block(self.simulator.program.layout.state())
     }
@@ -112,7 +112,7 @@ pub(super) type RowSeeds<'r> = (usize, &'r [f64]);
 #[derive(Debug)]
 pub(super) struct StepAdjoints<'s> {
     program: &'s Program,
-    path: Path<Steps<'s>>,
+    path: TilePath<TileSteps<'s>>,
     tile: Tile,
     adjoints: Adjoints,
     /// Of the start, and of instants at which states change.
@@ -126,7 +126,7 @@ pub(super) struct StepAdjoints<'s> {
 
 impl<'s> StepAdjoints<'s> {
     /// Over the path of an assembled tile.
-    pub fn new(simulator: &'s Simulator, start: &Tile, path: Path<Steps<'s>>) -> Self {
+    pub fn new(simulator: &'s Simulator, start: &Tile, path: TilePath<TileSteps<'s>>) -> Self {
         let program = &simulator.program;
         let tile = path.stepping().stepper.tile().clone();
         let adjoints = Adjoints::new(&tile);

@@ -4,13 +4,13 @@ use rayon::prelude::*;
 use symdiff::Tile;
 
 use super::add;
-use super::cells::{Functions, TileInputs, TileKernel};
+use super::cells::{CellFunctions, TileInputs, TileKernel};
 use super::formulas::derivatives_of_formulas;
 use super::functional::{Functional, Wanted};
-use super::path::Path;
+use super::path::TilePath;
 use super::rows::{LaneTerm, RowAdjoints};
 use super::start::StartAdjoints;
-use super::steps::{StepAdjoints, Steps};
+use super::steps::{StepAdjoints, TileSteps};
 use super::tuning::TUNING;
 use crate::assemble::System;
 use crate::compile::Tapes;
@@ -79,7 +79,7 @@ pub fn gradients(
 #[derive(Clone, Copy)]
 pub struct Under<'f> {
     /// One for each gradient, which is by these too.
-    pub functions: Option<Functions<'f>>,
+    pub functions: Option<CellFunctions<'f>>,
     /// Else the outputs alone are known, which cost a simulation, and derivatives are zero.
     pub backwards: bool,
 }
@@ -262,7 +262,7 @@ impl TileOf<'_> {
                 let at_end = motions.iter_mut().zip(&ends_of_rows).filter(|(_, end)| **end == steps);
                 at_end.for_each(|(sum, _)| sum.iter_mut().zip(state).for_each(|(sum, value)| *sum += weight * value));
             };
-            let path = Path::new(Steps::new(simulator, &start, steps, inputs), count, &mut visit);
+            let path = TilePath::new(TileSteps::new(simulator, &start, steps, inputs), count, &mut visit);
             for (lost, of_level) in self.lost.iter_mut().zip(path.stepping().lost()) {
                 *lost = lost.or(*of_level);
             }
@@ -315,7 +315,7 @@ impl TileOf<'_> {
         let events = EventAdjoints::new(simulator, &start, events, schedule.time(schedule.rows - 1))?;
         let count = ends.len();
         let steps = ExplicitSteps::new(simulator, &start, ends, inputs)?;
-        let path = Path::new(steps, count, &mut |_, _| {});
+        let path = TilePath::new(steps, count, &mut |_, _| {});
         let mut closing = RowAdjoints::closing(simulator, simulator.free_closure()?, &start).under(inputs);
         let mut run = ExplicitAdjoints::new(simulator, &start, path)?.through(events);
         let by_start = run.pull(&rows, &mut closing, values);

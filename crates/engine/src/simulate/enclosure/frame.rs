@@ -42,7 +42,7 @@ pub(super) struct Units {
 
 /// A frame of dimension 3n, in units of [`Units::scale`].
 #[derive(Clone, Debug)]
-pub(super) struct Frame {
+pub(super) struct EnclosureFrame {
     /// The independent coordinates, f.
     independent: Vec<CoordinateId>,
     /// S and F.
@@ -55,7 +55,7 @@ pub(super) struct Frame {
     fading: Matrix3<f64>,
 }
 
-impl Frame {
+impl EnclosureFrame {
     /// At the start: `tangent` is ∂q/∂(independent coordinates), n × f, and `push` is P, n × m, in SI units.
     pub fn new(
         space: &ModelSpace,

@@ -39,7 +39,7 @@ use crate::assemble::System;
 use crate::certificate::matrix::Models;
 use crate::certificate::{Certified, Equations};
 use crate::compile::{AtStart, Coefficients, EquationsProgram, Tapes, compile_equations, list_equations};
-use frame::{Frame, Units};
+use frame::{EnclosureFrame, Units};
 pub use motion::{MotionEnclosure, MotionSpaces};
 use tuning::TUNING;
 
@@ -178,7 +178,7 @@ pub struct Enclosure<'s> {
     /// q̂, v̂, w in that order, 3n: polynomials only.
     state: Models,
     /// A, in units of `scale`.
-    frame: Frame,
+    frame: EnclosureFrame,
     /// r.
     radii: Vec<f64>,
     units: Units,
@@ -219,7 +219,7 @@ impl<'s> Enclosure<'s> {
         let units = Units { scale, step: h, motion: unit(TUNING.motion_time / h) };
         let gains = Gains::new(coefficients, h);
         let (tangent, push, independent) = start::tangent(simulator, program, space, &mut memory)?;
-        let frame = Frame::new(space, &units, &gains, &tangent, &push, independent);
+        let frame = EnclosureFrame::new(space, &units, &gains, &tangent, &push, independent);
         let mut enclosure = Self {
             space,
             certifier,

@@ -12,7 +12,7 @@ use crate::simulate::closure::choose_independent;
 use crate::simulate::simulator::Simulator;
 
 /// A square system of equations among a program's registers.
-pub(super) struct Equations<'p> {
+pub(super) struct SquareSystem<'p> {
     /// Registers of the unknowns.
     unknowns: Vec<usize>,
     /// Registers of the residuals, after `residual`.
@@ -54,7 +54,7 @@ pub(super) fn assemble(
         let column = |index: usize| free.iter().position(|&known| known == index);
         let slopes = program.closure_by[level].iter();
         let entries = slopes.filter_map(|&(row, index, register)| Some((row, column(index)?, register))).collect();
-        let equations = Equations {
+        let equations = SquareSystem {
             unknowns: free.iter().map(|index| start + index).collect(),
             residuals: program.closure[level].clone(),
             residual: vec![program.closure()],
@@ -180,14 +180,14 @@ fn set_time(space: &ModelSpace, memory: &mut ModelMemory, register: usize, time:
 }
 
 /// M w + Φ_qᵀ λ − Q = 0 and Φ̈ = 0, whose derivative by w is Φ_q.
-pub(super) fn accelerations(program: &EquationsProgram) -> Equations<'_> {
+pub(super) fn accelerations(program: &EquationsProgram) -> SquareSystem<'_> {
     let layout = &program.layout;
     let n = layout.q.len();
     let [_, _, by_w, by_lambda] = &program.motion_by;
     let mut entries = by_w.clone();
     entries.extend(by_lambda.iter().map(|&(row, column, register)| (row, n + column, register)));
     entries.extend(program.constraint_by_position.iter().map(|&(row, column, register)| (n + row, column, register)));
-    Equations {
+    SquareSystem {
         unknowns: layout.w.clone().chain(layout.lambda.clone()).collect(),
         residuals: program.motion.iter().chain(&program.constraint_rates[1]).copied().collect(),
         residual: vec![program.residual(), program.rates()],
@@ -197,7 +197,7 @@ pub(super) fn accelerations(program: &EquationsProgram) -> Equations<'_> {
     }
 }
 
-impl Equations<'_> {
+impl SquareSystem<'_> {
     /// Encloses the unknowns, from the approximation in the memory.
     pub(super) fn solve(&self, space: &ModelSpace, memory: &mut ModelMemory) -> Result<(), EnclosureError> {
         if self.unknowns.len() != self.residuals.len() {

@@ -20,7 +20,7 @@ pub(in crate::simulate) use jet_states::corrections;
 pub use jets::JetRun;
 pub(in crate::simulate) use observed::stops_of_lost;
 pub use observed::{Observed, Stop};
-pub(in crate::simulate) use reduction::Reduction;
+pub(in crate::simulate) use reduction::Accumulator;
 pub use reduction::{Accumulation, Channel};
 pub(crate) use row_closure::Needs;
 pub(in crate::simulate) use row_closure::{JetClosure, RowClosure};

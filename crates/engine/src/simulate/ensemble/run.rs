@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::lane_steps::LaneSteps;
 use super::observed::{Observed, Stop};
-use super::reduction::{Channel, Reduction};
+use super::reduction::{Accumulator, Channel};
 use super::row_accelerations::RowAccelerations;
 use super::switch_extents::SwitchExtents;
 use super::tiling::{put_lanes, tiles};
@@ -61,7 +61,7 @@ struct TileRun<'s> {
     watch: Option<SingularWatch<'s>>,
     parting: Option<PartingWatch<'s>>,
     /// Where outputs are reduced to one number.
-    reduction: Option<Reduction<'s>>,
+    reduction: Option<Accumulator<'s>>,
     interruption: Interruption<'s>,
     /// Whether it ended at an interruption.
     is_cut: bool,
@@ -130,7 +130,7 @@ impl<'s> Integrator<'s> for EnsembleRun<'s> {
         if !channels.is_empty() {
             let outputs = self.simulator.program.outputs.len();
             for tile in &mut self.tiles {
-                tile.reduction = Some(Reduction::new(channels, outputs, tile.stepper.tile().width()));
+                tile.reduction = Some(Accumulator::new(channels, outputs, tile.stepper.tile().width()));
             }
         }
     }

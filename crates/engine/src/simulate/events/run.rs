@@ -12,7 +12,7 @@ use super::tuning::TUNING;
 use crate::compile::SwitchProgram;
 use crate::numerics::{BoundaryMargins, CutMotions, Sample, SegmentMotions};
 use crate::simulate::control::{Schedule, Steps};
-use crate::simulate::ensemble::{Channel, Observed, Reduction, RowClosure, Stop, stops_of_lost};
+use crate::simulate::ensemble::{Accumulator, Channel, Observed, RowClosure, Stop, stops_of_lost};
 use crate::simulate::error::SimulationError;
 use crate::simulate::explicit::tuning::TUNING as EXPLICIT;
 use crate::simulate::integrator::Integrator;
@@ -53,7 +53,7 @@ struct RowTile<'s> {
 /// The reduction of a lane's outputs, and the time up to which they are, s.
 #[derive(Debug)]
 struct Reduced<'s> {
-    reduction: Reduction<'s>,
+    reduction: Accumulator<'s>,
     time: f64,
 }
 
@@ -160,7 +160,7 @@ impl<'s> Integrator<'s> for SegmentRun<'s> {
     /// Of samples that spell no word nothing is reduced.
     fn reduce(&mut self, channels: &'s [Channel]) {
         let outputs = self.simulator.program.outputs.len();
-        let start = || Reduced { reduction: Reduction::new(channels, outputs, 1), time: f64::NEG_INFINITY };
+        let start = || Reduced { reduction: Accumulator::new(channels, outputs, 1), time: f64::NEG_INFINITY };
         for tile in self.tiles.iter_mut().filter(|_| !channels.is_empty()) {
             tile.reduced = tile.tile.samples.iter().map(|_| start()).collect();
         }

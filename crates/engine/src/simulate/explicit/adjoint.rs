@@ -9,7 +9,7 @@ use symdiff::Tile;
 use super::runge_kutta::RungeKutta;
 use super::tableau::{DENSE, Row, STAGES, TIMES, WEIGHTS, WITH_DENSE};
 use super::tuning::TUNING;
-use crate::simulate::adjoint::{LaneTerm, Path, RowAdjoints, StartAdjoints, Stepping, TileInputs, TileKernel, add};
+use crate::simulate::adjoint::{LaneTerm, RowAdjoints, StartAdjoints, Stepping, TileInputs, TileKernel, TilePath, add};
 use crate::simulate::ensemble::{Needs, RowClosure};
 use crate::simulate::error::SimulationError;
 use crate::simulate::events::EventAdjoints;
@@ -89,7 +89,7 @@ pub(in crate::simulate) struct ExplicitRow {
 /// Goes backwards over a path.
 #[derive(Debug)]
 pub(in crate::simulate) struct ExplicitAdjoints<'s> {
-    path: Path<ExplicitSteps<'s>>,
+    path: TilePath<ExplicitSteps<'s>>,
     /// Of the stages, and of closures.
     memory: StartAdjoints<'s>,
     closures: StartAdjoints<'s>,
@@ -113,7 +113,11 @@ impl<'s> ExplicitAdjoints<'s> {
     ///
     /// # Errors
     /// Where the closure's equations have no factors.
-    pub fn new(simulator: &'s Simulator, start: &Tile, path: Path<ExplicitSteps<'s>>) -> Result<Self, SimulationError> {
+    pub fn new(
+        simulator: &'s Simulator,
+        start: &Tile,
+        path: TilePath<ExplicitSteps<'s>>,
+    ) -> Result<Self, SimulationError> {
         let (needs, size) = (Needs::of(simulator), path.start().len());
         let program = simulator.free_closure()?;
         let [memory, closures] = [0, 1].map(|_| StartAdjoints::new(simulator, program, start));

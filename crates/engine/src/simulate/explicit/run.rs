@@ -8,7 +8,7 @@ use super::tuning::TUNING;
 use crate::numerics::Sample;
 use crate::simulate::control::{Schedule, Steps};
 use crate::simulate::diagnostics::PartingWatch;
-use crate::simulate::ensemble::{Channel, Observed, Reduction, RowClosure, Stop, put_lanes, stops_of_lost};
+use crate::simulate::ensemble::{Accumulator, Channel, Observed, RowClosure, Stop, put_lanes, stops_of_lost};
 use crate::simulate::error::SimulationError;
 use crate::simulate::integrator::Integrator;
 use crate::simulate::interruption::Interruption;
@@ -46,7 +46,7 @@ pub(super) struct Tile<'s> {
     /// Lanes that still run.
     pub alive: Vec<bool>,
     /// Where outputs are reduced to one number.
-    reduction: Option<Reduction<'s>>,
+    reduction: Option<Accumulator<'s>>,
     interruption: Interruption<'s>,
     /// Whether it ended at an interruption.
     is_cut: bool,
@@ -122,7 +122,7 @@ impl<'s> Integrator<'s> for ExplicitRun<'s> {
     fn reduce(&mut self, channels: &'s [Channel]) {
         let outputs = self.simulator.program.outputs.len();
         for tile in self.tiles.iter_mut().filter(|_| !channels.is_empty()) {
-            tile.reduction = Some(Reduction::new(channels, outputs, tile.alive.len()));
+            tile.reduction = Some(Accumulator::new(channels, outputs, tile.alive.len()));
         }
     }
 
@@ -239,7 +239,7 @@ impl Tile<'_> {
 }
 
 /// Accumulates the reductions of a state's outputs, if any.
-fn reduce(reduction: &mut Option<Reduction>, rows: &mut RowClosure, alive: &[bool], time: f64, state: &mut [f64]) {
+fn reduce(reduction: &mut Option<Accumulator>, rows: &mut RowClosure, alive: &[bool], time: f64, state: &mut [f64]) {
     if let Some(reduction) = reduction {
         let mut values = reduction.buffer();
         rows.close(time, state);

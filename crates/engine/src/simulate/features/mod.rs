@@ -12,7 +12,7 @@ pub(crate) mod tuning;
 use symdiff::{Expr, Interval, Node, Ranges, Unary};
 
 use self::candidates::{Candidate, candidates};
-use self::path::Path;
+use self::path::StepCubics;
 use super::step::Stepper;
 use crate::assemble::System;
 use crate::compile::Layout;
@@ -55,7 +55,7 @@ pub(super) struct Passage<'p> {
 /// Memory of enclosures.
 #[derive(Clone, Debug, Default)]
 pub(super) struct FeatureWork {
-    path: Path,
+    path: StepCubics,
     /// Over the whole step, at its beginning, at its end, and over a part.
     symbols: [Vec<Interval>; 4],
     values: Vec<Interval>,
@@ -161,7 +161,7 @@ impl Function {
     /// Range over those pieces of a part of a path on which it is used; `None` where it is on none.
     fn along(
         &self,
-        path: &Path,
+        path: &StepCubics,
         part: [f64; 2],
         halvings: u32,
         symbols: &mut Vec<Interval>,

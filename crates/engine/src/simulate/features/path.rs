@@ -7,14 +7,14 @@ use crate::compile::Layout;
 
 /// The cubics that positions follow in a step of a sample.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Path {
+pub(super) struct StepCubics {
     times: [f64; 2],
     parameters: Vec<f64>,
     /// Bézier points of every position.
     points: Vec<[f64; 4]>,
 }
 
-impl Path {
+impl StepCubics {
     /// Takes the path of a step.
     pub fn take(&mut self, passage: Passage, layout: &Layout) {
         let Passage { end, h, parameters, states: [before, after], width, lane } = passage;

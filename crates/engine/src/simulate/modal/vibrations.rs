@@ -17,7 +17,7 @@ use crate::assemble::{ConstraintId, System};
 use crate::compile::{EquationsProgram, compile_equations};
 use crate::model::ModesRequest;
 use crate::numerics::{RowSpace, combined, dot};
-use crate::simulate::statics::{Configuration, Linearised, reduced, times};
+use crate::simulate::statics::{Linearised, StaticConfiguration, reduced, times};
 
 /// Small vibrations of a mechanism.
 #[derive(Debug)]
@@ -130,7 +130,7 @@ impl Vibrations {
     fn linearised(&self, state: &[f64]) -> (Linearised, Vec<f64>) {
         let layout = &self.program.layout;
         let parameters = &state[layout.parameters.clone()];
-        let mut at = Configuration::new(&self.program, &self.scale, &self.redundant, parameters);
+        let mut at = StaticConfiguration::new(&self.program, &self.scale, &self.redundant, parameters);
         at.set(layout.time..layout.time + 1, &state[layout.time..layout.time + 1]);
         at.set(layout.state(), &state[layout.state()]);
         let outputs = at.outputs();

@@ -15,7 +15,7 @@ use crate::compile::{EquationsProgram, Tapes};
 
 /// The tapes of the equations with one state.
 #[derive(Debug)]
-pub struct Configuration<'p> {
+pub struct StaticConfiguration<'p> {
     program: &'p EquationsProgram,
     scale: &'p [f64],
     /// Constraints that others imply: they have no multipliers.
@@ -40,7 +40,7 @@ pub struct Linearised {
     pub jacobian: Vec<Vec<f64>>,
 }
 
-impl<'p> Configuration<'p> {
+impl<'p> StaticConfiguration<'p> {
     /// At rest at the origin, with these parameters.
     pub fn new(
         program: &'p EquationsProgram,

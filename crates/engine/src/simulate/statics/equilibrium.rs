@@ -9,7 +9,7 @@
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
-use super::configuration::{Configuration, Linearised, reduced, times};
+use super::configuration::{Linearised, StaticConfiguration, reduced, times};
 use super::scaled::Scaled;
 use super::stability::Stability;
 use super::tuning::TUNING;
@@ -25,12 +25,12 @@ pub struct Equilibrium {
     pub(super) program: EquationsProgram,
     pub(super) scale: Vec<f64>,
     pub(super) redundant: Vec<ConstraintId>,
-    pub(super) states: Vec<State>,
+    pub(super) states: Vec<RestState>,
 }
 
 /// A state, whose coordinate's position it is here.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct State {
+pub(super) struct RestState {
     /// Index of the coordinate in q.
     index: usize,
     /// Registers of the coordinate, and of the state elsewhere.
@@ -56,7 +56,8 @@ impl Equilibrium {
         let program = compile_equations(&system.at_rest());
         let Layout { q, v, .. } = &program.layout;
         let indices = (0..q.len()).filter(|&index| system.coordinates[index].is_state);
-        let states = indices.map(|index| State { index, position: q.start + index, value: v.start + index }).collect();
+        let states =
+            indices.map(|index| RestState { index, position: q.start + index, value: v.start + index }).collect();
         Self { program, scale, redundant: redundant.to_vec(), states }
     }
 
@@ -71,8 +72,8 @@ impl Equilibrium {
     }
 
     /// The equations at rest with these parameters.
-    pub fn configuration(&self, parameters: &[f64]) -> Configuration<'_> {
-        Configuration::new(&self.program, &self.scale, &self.redundant, parameters)
+    pub fn configuration(&self, parameters: &[f64]) -> StaticConfiguration<'_> {
+        StaticConfiguration::new(&self.program, &self.scale, &self.redundant, parameters)
     }
 
     /// The equilibrium with `parameters` near that of `nominal` parameters at `state`: its state (the layout's
@@ -146,7 +147,7 @@ impl Equilibrium {
     /// The largest change of a step from these positions, per scale; of states relative to their values.
     fn size(&self, step: &Step, before: &[f64]) -> f64 {
         let mut sizes: Vec<f64> = step.all.iter().map(|change| change.abs()).collect();
-        for &State { index, .. } in &self.states {
+        for &RestState { index, .. } in &self.states {
             sizes[index] /= (before[index] / self.scale[index]).abs().max(1.0);
         }
         sizes.into_iter().fold(0.0, f64::max)
@@ -158,7 +159,7 @@ impl Equilibrium {
     }
 
     /// The equations at an equilibrium's state.
-    pub fn at(&self, state: &[f64], parameters: &[f64]) -> Configuration<'_> {
+    pub fn at(&self, state: &[f64], parameters: &[f64]) -> StaticConfiguration<'_> {
         let layout = &self.program.layout;
         let mut at = self.configuration(parameters);
         self.set_positions(&mut at, state);
@@ -167,14 +168,14 @@ impl Equilibrium {
     }
 
     /// Sets positions, and those of the states' coordinates to the states.
-    fn set_positions(&self, at: &mut Configuration, state: &[f64]) {
+    fn set_positions(&self, at: &mut StaticConfiguration, state: &[f64]) {
         let registers = self.program.layout.q.clone();
         at.set(registers.clone(), &state[registers]);
         self.states.iter().for_each(|own| at.set(own.position..own.position + 1, &[state[own.value]]));
     }
 
     /// The equations with the multipliers that leave the smallest forces.
-    fn balanced(&self, at: &mut Configuration) -> Balance {
+    fn balanced(&self, at: &mut StaticConfiguration) -> Balance {
         let (n, registers) = (self.scale.len(), self.program.layout.lambda.clone());
         let linear = at.linearise();
         let space = RowSpace::of(&linear.jacobian, n);
@@ -212,7 +213,7 @@ struct Step {
 impl Balance {
     /// `None` where a number is not finite. Without states a long step leads downhill; with them it is that of Newton's
     /// method, shortened so that no coordinate of the mechanism goes far.
-    fn step(&self, states: &[State]) -> Option<Step> {
+    fn step(&self, states: &[RestState]) -> Option<Step> {
         let Linearised { motion, constraint, stiffness, .. } = &self.linear;
         let (basis, n) = (&self.space.null, motion.len());
         let right: Vec<f64> = constraint.iter().map(|value| -value).collect();
@@ -251,7 +252,7 @@ impl Balance {
         Some(Step { all, allowed, work, is_newton: is_newton && shortened == 1.0, is_downhill })
     }
 
-    fn why(&self, scale: &[f64], states: &[State]) -> NoEquilibrium {
+    fn why(&self, scale: &[f64], states: &[RestState]) -> NoEquilibrium {
         let (basis, n) = (&self.space.null, scale.len());
         let forces: Vec<f64> = basis.iter().map(|vector| -dot(vector, &self.linear.motion)).collect();
         let pushed = combined(basis, &forces, n);

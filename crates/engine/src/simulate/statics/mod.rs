@@ -12,5 +12,5 @@ mod scaled;
 mod stability;
 pub(crate) mod tuning;
 
-pub use configuration::{Configuration, Linearised, reduced, times};
+pub use configuration::{Linearised, StaticConfiguration, reduced, times};
 pub use equilibrium::{Equilibrium, NoEquilibrium};

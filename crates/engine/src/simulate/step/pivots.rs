@@ -2,11 +2,11 @@
 
 use symdiff::{Tile, Vectorise};
 
-use crate::compile::Watched;
+use crate::compile::WatchedPivots;
 
 /// Marks lanes with a pivot that is too small as singular: they take the rank-revealing solve.
 pub(super) struct Watch<'a> {
-    pub watched: &'a [Watched],
+    pub watched: &'a [WatchedPivots],
     pub tile: &'a Tile,
     pub singular: &'a mut [bool],
 }
@@ -19,7 +19,7 @@ impl Vectorise for Watch<'_> {
         let Self { watched, tile, singular } = self;
         // NaN is not trusted either.
         let lost = |inverse: f64, largest: f64| inverse.is_nan() || inverse.abs() > largest;
-        for Watched { mode, pivots } in watched {
+        for WatchedPivots { mode, pivots } in watched {
             match mode {
                 None => pivots.iter().for_each(|pivot| {
                     for (singular, &inverse) in singular.iter_mut().zip(tile.lane(pivot.register)) {

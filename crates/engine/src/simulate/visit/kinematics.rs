@@ -12,7 +12,7 @@ use crate::assemble::EquationId;
 use crate::numerics::Sample;
 use crate::simulate::control::Schedule;
 use crate::simulate::diagnostics::SingularPass;
-use crate::simulate::ensemble::{Channel, Reduction, Stop};
+use crate::simulate::ensemble::{Accumulator, Channel, Stop};
 use crate::simulate::error::{SimulationError, assembly_error};
 use crate::simulate::interruption::Interruption;
 use crate::simulate::simulator::Simulator;
@@ -37,7 +37,7 @@ impl Simulator {
             rows.push(times.len());
             times.push(schedule.time(row));
         }
-        let mut reduction = Reduction::new(channels, self.start.outputs.len(), 1);
+        let mut reduction = Accumulator::new(channels, self.start.outputs.len(), 1);
         let mut index = 0;
         let way = self.walk(sample, &times, interruption, &mut |assembly| {
             let outputs = self.start.outputs.iter().map(|&register| assembly.tile().lane(register)[0]);

@@ -5,7 +5,7 @@ use super::tuning::TUNING;
 use crate::compile::Layout;
 use crate::numerics::Sample;
 use crate::simulate::control::Steps;
-use crate::simulate::ensemble::{Channel, EnsembleRun, Observed, Reduction, Stop};
+use crate::simulate::ensemble::{Accumulator, Channel, EnsembleRun, Observed, Stop};
 use crate::simulate::error::{SimulationError, assembly_error};
 use crate::simulate::integrator::Integrator;
 use crate::simulate::interruption::Interruption;
@@ -36,7 +36,7 @@ impl Simulator {
         let (states, stop) = self.states(sample, steps, interruption)?;
         let lines = self.system.outputs.len();
         let mut visit = Visit { stop, ..Visit::default() };
-        let mut reduction = Reduction::new(channels, lines, 1);
+        let mut reduction = Accumulator::new(channels, lines, 1);
         for (row, (state, nominal)) in states.iter().zip(nominal).enumerate() {
             if interruption.is_asked() {
                 return Err(SimulationError::Interrupted);

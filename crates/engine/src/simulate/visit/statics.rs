@@ -2,7 +2,7 @@
 
 use super::Visit;
 use crate::numerics::Sample;
-use crate::simulate::ensemble::{Channel, Reduction};
+use crate::simulate::ensemble::{Accumulator, Channel};
 use crate::simulate::error::SimulationError;
 use crate::simulate::simulator::Simulator;
 
@@ -16,7 +16,7 @@ impl Simulator {
             *last = equilibrium.stability(&state, sample).smallest;
         }
         self.derived.iter().for_each(|derived| derived.set(sample, &mut values));
-        let mut reduction = Reduction::new(channels, values.len(), 1);
+        let mut reduction = Accumulator::new(channels, values.len(), 1);
         reduction.push(0.0, values.clone(), &[true]);
         Ok(Visit { values, reduced: reduction.finish(), ..Visit::default() })
     }

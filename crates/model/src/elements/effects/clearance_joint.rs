@@ -11,7 +11,7 @@
 use mbint_derive::Element;
 use symdiff::{Binary, Formula};
 
-use super::contact::touch::{self, Law};
+use super::contact::touch::{self, ContactLaw};
 use super::laws::impact::Push;
 use super::contact::felt::SENSORS;
 use super::{ForceElement, Forces, Friction, Impact, TypedSensor};
@@ -70,10 +70,10 @@ impl ForceElement for ClearanceJoint {
         let axis = forces.is_spatial().then(|| axis.unit());
         let impact = Push::of(forces, &self.impact)?;
         let friction = self.friction.as_ref().map(|friction| friction.resistance(forces)).transpose()?;
-        let shape = touch::Shape::Hollow(clearance);
+        let shape = touch::WholeSurface::Hollow(clearance);
         let pair = forces.pair(self.between);
         let centre = pair.second.point.position;
-        let law = Law { impact, friction, along: None };
+        let law = ContactLaw { impact, friction, along: None };
         let felt = law.act(forces, &pair, shape.touch(&pair, centre, radius, axis));
         felt.measured(forces);
         // Beyond, the middle of the journal is outside of the bearing.

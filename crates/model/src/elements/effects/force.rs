@@ -31,13 +31,13 @@ pub struct Force {
     #[key(in_ground)]
     pub value: Components,
     /// Whose axes the components are along.
-    #[key(default = Frame::Ground)]
-    pub frame: Frame,
+    #[key(default = ForceFrame::Ground)]
+    pub frame: ForceFrame,
 }
 
 /// Whose axes components are along.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Choice)]
-pub enum Frame {
+pub enum ForceFrame {
     /// Components along the ground's axes.
     Ground,
     /// Components along the body's axes.
@@ -49,12 +49,12 @@ impl ForceElement for Force {
     const SENSORS: &'static [TypedSensor] = &[];
 
     fn direction(&self) -> Option<&[Formula; 3]> {
-        (self.frame == Frame::Ground).then_some(&*self.value)
+        (self.frame == ForceFrame::Ground).then_some(&*self.value)
     }
 
     fn apply<'g>(&self, forces: &mut dyn Forces<'g>) -> Result<(), BuildError> {
         let mut force = forces.vector(&self.value)?;
-        if self.frame == Frame::Body {
+        if self.frame == ForceFrame::Body {
             force = forces.rotated(self.on.body, force);
         }
         let point = forces.point(self.on);

@@ -12,7 +12,7 @@ use mbint_derive::Element;
 use schemars::{Schema, SchemaGenerator};
 use symdiff::Formula;
 
-use super::force::Frame;
+use super::force::ForceFrame;
 use super::{ForceElement, Forces, TypedSensor};
 use crate::elements::Glyph;
 use crate::grammar::{BodyRef, Checked, Fields, Image, JointCoordinate, Node, OnJoint, Quantity, Reader, Reference, Span, SymbolTable, Value, plane, values};
@@ -41,8 +41,8 @@ pub struct Torque {
     #[key(in_ground)]
     pub value: AboutAxes,
     /// Whose axes the components are along.
-    #[key(default = Frame::Ground)]
-    pub frame: Frame,
+    #[key(default = ForceFrame::Ground)]
+    pub frame: ForceFrame,
 }
 
 /// What a torque acts on, by index.
@@ -69,7 +69,7 @@ impl ForceElement for Torque {
         match self.on {
             TorqueOn::Body(on) => {
                 let mut torque = forces.vector(&self.value.0)?;
-                if self.frame == Frame::Body {
+                if self.frame == ForceFrame::Body {
                     torque = forces.rotated(on, torque);
                 }
                 forces.torque(self.reaction_on(), on, torque);

@@ -107,7 +107,7 @@ pub struct ToothForce<'g> {
 
 /// A gear, or rack, and its bearing in the frame of the body that both bearings have in common.
 #[derive(Clone, Copy)]
-pub(super) struct Toothed<'g> {
+pub(super) struct ToothedBody<'g> {
     /// By index.
     pub body: usize,
     /// Whether the joint's coordinate is that of the toothed body against the common one, or −1 where it is the
@@ -119,7 +119,7 @@ pub(super) struct Toothed<'g> {
     pub axis: Vector<'g>,
 }
 
-impl<'g> Toothed<'g> {
+impl<'g> ToothedBody<'g> {
     /// From a place to the axis.
     fn inward(self, from: Vector<'g>) -> Vector<'g> {
         let arm = self.center - from;
@@ -147,7 +147,7 @@ pub(super) struct Mesh<'g, 'k> {
     on: [OnJoint; 2],
     /// The body that holds both, by index.
     pub common: usize,
-    pub toothed: [Toothed<'g>; 2],
+    pub toothed: [ToothedBody<'g>; 2],
 }
 
 impl<'g, 'k> Mesh<'g, 'k> {
@@ -165,7 +165,7 @@ impl<'g, 'k> Mesh<'g, 'k> {
             let [center, axis] =
                 k.line(on, common)?.ok_or_else(|| refuse(format!("`{}` has no axis", k.joint_name(on.joint))))?;
             let sign = if bodies[0] == common { 1.0 } else { -1.0 };
-            Ok(Toothed { body: other(bodies, common), sign, center, axis })
+            Ok(ToothedBody { body: other(bodies, common), sign, center, axis })
         };
         Ok(Self { k, own, on, common, toothed: [toothed(on[0], first)?, toothed(on[1], second)?] })
     }

@@ -3,7 +3,7 @@
 use mbint_derive::Element;
 use symdiff::Formula;
 
-use super::{Place, ShapeElement};
+use super::{ShapeFrame, ShapeElement};
 use crate::elements::effects::{Points, check_ends};
 use crate::elements::form::Form;
 use crate::grammar::{Checked, Fields, Reader, SymbolTable};
@@ -26,7 +26,7 @@ pub struct Capsule {
     #[quantity(unit = "m", constant, positive)]
     radius: Formula,
     #[group]
-    pub(super) place: Place,
+    pub(super) place: ShapeFrame,
 }
 
 impl ShapeElement for Capsule {

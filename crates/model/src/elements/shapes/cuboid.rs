@@ -3,7 +3,7 @@
 use mbint_derive::Element;
 use symdiff::Formula;
 
-use super::{Place, ShapeElement};
+use super::{ShapeFrame, ShapeElement};
 use crate::elements::effects::check_lengths;
 use crate::elements::form::Form;
 use crate::grammar::{Checked, Fields, Reader, SpacePoint, SymbolTable};
@@ -25,7 +25,7 @@ pub struct Cuboid {
     #[key(image = Same)]
     size: SpacePoint,
     #[group]
-    pub(super) place: Place,
+    pub(super) place: ShapeFrame,
 }
 
 impl ShapeElement for Cuboid {

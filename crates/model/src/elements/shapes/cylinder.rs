@@ -3,7 +3,7 @@
 use mbint_derive::Element;
 use symdiff::Formula;
 
-use super::{Place, ShapeElement};
+use super::{ShapeFrame, ShapeElement};
 use crate::elements::form::Form;
 use crate::grammar::SpaceAxis;
 
@@ -27,7 +27,7 @@ pub struct Cylinder {
     #[key(default = SpaceAxis::z())]
     axis: SpaceAxis,
     #[group]
-    pub(super) place: Place,
+    pub(super) place: ShapeFrame,
 }
 
 impl ShapeElement for Cylinder {

@@ -3,7 +3,7 @@
 use mbint_derive::Element;
 use symdiff::Formula;
 
-use super::{Place, ShapeElement};
+use super::{ShapeFrame, ShapeElement};
 use crate::elements::form::Form;
 use crate::grammar::{Factors, FromNumber, Mesh};
 
@@ -24,7 +24,7 @@ pub struct MeshShape {
     #[key(default = Factors::from_number(1.0))]
     scale: Factors,
     #[group]
-    pub(super) place: Place,
+    pub(super) place: ShapeFrame,
 }
 
 impl ShapeElement for MeshShape {

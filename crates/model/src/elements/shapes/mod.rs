@@ -28,7 +28,7 @@ pub trait ShapeElement: Element {
 
 /// The frame of a shape.
 #[derive(Clone, Debug, Element)]
-pub struct Place {
+pub struct ShapeFrame {
     /// Of its frame in the body's frame; z may be there in the plane, too.
     #[quantity(unit = "m", constant)]
     #[key(default = SpacePoint::from_number(0.0))]

@@ -3,7 +3,7 @@
 use mbint_derive::Element;
 use symdiff::Formula;
 
-use super::{Place, ShapeElement};
+use super::{ShapeFrame, ShapeElement};
 use crate::elements::effects::ContactLine;
 use crate::elements::form::Form;
 use crate::grammar::{Checked, Fields, Reader, SymbolTable};
@@ -27,7 +27,7 @@ pub struct Outline {
     #[quantity(unit = "m", constant, nonnegative, default = 0)]
     thickness: Formula,
     #[group]
-    pub(super) place: Place,
+    pub(super) place: ShapeFrame,
 }
 
 impl ShapeElement for Outline {

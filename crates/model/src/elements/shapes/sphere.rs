@@ -3,7 +3,7 @@
 use mbint_derive::Element;
 use symdiff::Formula;
 
-use super::{Place, ShapeElement};
+use super::{ShapeFrame, ShapeElement};
 use crate::elements::form::Form;
 
 /// A ball about its frame's origin; in the plane a disc.
@@ -20,7 +20,7 @@ pub struct Sphere {
     #[quantity(unit = "m", constant, positive)]
     radius: Formula,
     #[group]
-    pub(super) place: Place,
+    pub(super) place: ShapeFrame,
 }
 
 impl ShapeElement for Sphere {

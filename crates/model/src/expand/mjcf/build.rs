@@ -16,7 +16,7 @@ use crate::syntax::source::Span;
 use crate::syntax::yaml::Node;
 
 /// A robot on its way into the model.
-pub struct Source<'r> {
+pub struct PlacedRobot<'r> {
     pub robot: &'r Robot,
     /// Numbers that are parameters.
     pub named: &'r HashSet<String>,
@@ -24,7 +24,7 @@ pub struct Source<'r> {
     pub holders: Vec<(usize, Pose)>,
 }
 
-impl<'r> Source<'r> {
+impl<'r> PlacedRobot<'r> {
     /// `words` are all of the model.
     pub fn new(robot: &'r Robot, named: &'r HashSet<String>, words: &HashSet<String>) -> Self {
         let mut source = Self { robot, named, holders: vec![(0, Pose::identity())] };
@@ -86,7 +86,7 @@ pub fn point(span: &Span, pose: &Pose) -> Node {
 }
 
 /// Adds bodies and joints.
-pub fn bodies(sections: &mut Sections, source: &Source) {
+pub fn bodies(sections: &mut Sections, source: &PlacedRobot) {
     let robot = source.robot;
     let mut points: Vec<Vec<(String, Node)>> = robot.bodies.iter().map(|_| Vec::new()).collect();
     for (index, body) in robot.bodies.iter().enumerate() {
@@ -155,7 +155,7 @@ fn ground(sections: &mut Sections, span: &Span, points: Vec<(String, Node)>) {
 }
 
 /// A body with all that is part of it.
-fn rigid(source: &Source, index: usize, points: Vec<(String, Node)>) -> Node {
+fn rigid(source: &PlacedRobot, index: usize, points: Vec<(String, Node)>) -> Node {
     let body = &source.robot.bodies[index];
     let span = &body.span;
     let parts: Vec<MassPart> = (0..source.robot.bodies.len()).filter_map(|part| part_of(source, part, index)).collect();
@@ -179,7 +179,7 @@ fn rigid(source: &Source, index: usize, points: Vec<(String, Node)>) -> Node {
 }
 
 /// The mass of a body, where it is part of another.
-fn part_of(source: &Source, index: usize, holder: usize) -> Option<MassPart> {
+fn part_of(source: &PlacedRobot, index: usize, holder: usize) -> Option<MassPart> {
     let (held_by, pose) = &source.holders[index];
     let mass = source.robot.bodies[index].mass.as_ref().filter(|_| *held_by == holder)?;
     let pose = pose.then(&source.vector(&mass.center), &mass.rotation);
@@ -194,7 +194,7 @@ fn part_of(source: &Source, index: usize, holder: usize) -> Option<MassPart> {
 }
 
 /// The fixed joint of a body that has no other.
-fn weld(source: &Source, body: &Body, points: &mut [Vec<(String, Node)>], between: &mut Vec<Between>) {
+fn weld(source: &PlacedRobot, body: &Body, points: &mut [Vec<(String, Node)>], between: &mut Vec<Between>) {
     let (holder, pose) = &source.holders[body.parent];
     let pose = pose.then(&source.vector(&body.position), &body.rotation);
     let at = add(&mut points[*holder], &weld_of(body), point(&body.span, &pose));
@@ -205,7 +205,7 @@ fn weld(source: &Source, body: &Body, points: &mut [Vec<(String, Node)>], betwee
 }
 
 /// The joints of a body, from the one that it is in outwards.
-fn joints(source: &Source, body: &Body, points: &mut [Vec<(String, Node)>], between: &mut Vec<Between>) {
+fn joints(source: &PlacedRobot, body: &Body, points: &mut [Vec<(String, Node)>], between: &mut Vec<Between>) {
     let index = source.robot.joints.get(*body.joints.first().unwrap_or(&0)).map_or(0, |joint| joint.body);
     let mut previous: Option<String> = None;
     for (place, &joint) in body.joints.iter().enumerate() {

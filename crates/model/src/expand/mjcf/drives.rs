@@ -1,9 +1,9 @@
 //! Forces on sums of joints' positions: of tendons, and of actuators with their commands, memories and limits.
 
-use super::build::Source;
+use super::build::PlacedRobot;
 use super::tree::{Sections, keys, text};
 use crate::robots::algebra::Value;
-use crate::robots::mjcf::robot::{Actuator, Law, Length, Memory};
+use crate::robots::mjcf::robot::{Actuator, ActuatorLaw, Length, Memory};
 use crate::syntax::source::Span;
 use crate::syntax::yaml::Entry;
 
@@ -17,7 +17,7 @@ pub struct Share {
 }
 
 /// The sum of positions, or rates, in a formula.
-pub fn sum(source: &Source, length: &Length, rate: bool) -> String {
+pub fn sum(source: &PlacedRobot, length: &Length, rate: bool) -> String {
     let term = |&(joint, by): &(usize, f64)| {
         let coordinate = source.robot.joints[joint].coordinate(rate);
         if by == 1.0 { coordinate } else { format!("({by:?})*{coordinate}") }
@@ -27,7 +27,7 @@ pub fn sum(source: &Source, length: &Length, rate: bool) -> String {
 }
 
 /// A force on a sum of coordinates acts on each of them.
-pub fn shares(source: &Source, name: &str, length: &Length, force: &str, span: &Span) -> Vec<Share> {
+pub fn shares(source: &PlacedRobot, name: &str, length: &Length, force: &str, span: &Span) -> Vec<Share> {
     let share = |&(joint, by): &(usize, f64)| Share {
         name: match length.terms.len() {
             1 => name.to_owned(),
@@ -41,14 +41,14 @@ pub fn shares(source: &Source, name: &str, length: &Length, force: &str, span: &
 }
 
 /// Adds the effect of a force on a joint.
-pub fn push(sections: &mut Sections, source: &Source, share: &Share) {
+pub fn push(sections: &mut Sections, source: &PlacedRobot, share: &Share) {
     let (joint, span) = (&source.robot.joints[share.joint], &share.span);
     let node = keys(span, [("on", text(&joint.span, &joint.name)), ("value", text(span, &share.force))]);
     sections.add("effects", &share.name, keys(span, [("preload", node)]));
 }
 
 /// Adds the forces of all actuators; on a joint with `actuatorfrcrange` as one, within it.
-pub fn add(sections: &mut Sections, source: &Source, controls: &[Entry]) {
+pub fn add(sections: &mut Sections, source: &PlacedRobot, controls: &[Entry]) {
     let actuators = &source.robot.actuators;
     let mut all: Vec<Share> =
         actuators.iter().flat_map(|actuator| drive(sections, source, actuator, controls)).collect();
@@ -69,7 +69,7 @@ pub fn add(sections: &mut Sections, source: &Source, controls: &[Entry]) {
 }
 
 /// The force of an actuator on each of its joints.
-fn drive(sections: &mut Sections, source: &Source, actuator: &Actuator, controls: &[Entry]) -> Vec<Share> {
+fn drive(sections: &mut Sections, source: &PlacedRobot, actuator: &Actuator, controls: &[Entry]) -> Vec<Share> {
     let told = controls.iter().find(|entry| entry.key == actuator.name);
     let control = told.and_then(|entry| entry.value.scalar());
     let span = told.map_or(&actuator.span, |entry| &entry.value.span);
@@ -94,7 +94,7 @@ fn drive(sections: &mut Sections, source: &Source, actuator: &Actuator, controls
     let rate = || format!("{gear}*{}", sum(source, &actuator.on, true));
     let number = |number| source.value(number).text();
     let mut force = match &actuator.law {
-        Law::Affine { gain, bias: [constant, by_length, by_rate] } => {
+        ActuatorLaw::Affine { gain, bias: [constant, by_length, by_rate] } => {
             let mut terms = vec![if *gain == 1.0 { u } else { format!("({gain:?})*{u}") }];
             if *constant != 0.0 {
                 terms.push(format!("({constant:?})"));
@@ -107,12 +107,12 @@ fn drive(sections: &mut Sections, source: &Source, actuator: &Actuator, controls
             }
             terms.join(" + ")
         }
-        Law::Position { kp, kv } if source.acts(kv) => {
+        ActuatorLaw::Position { kp, kv } if source.acts(kv) => {
             format!("{}*({u} - {}) - {}*{}", number(kp), length(), number(kv), rate())
         }
-        Law::Position { kp, .. } => format!("{}*({u} - {})", number(kp), length()),
-        Law::Velocity { kv } => format!("{}*({u} - {})", number(kv), rate()),
-        Law::Damper { kv } => format!("-{}*{u}*{}", number(kv), rate()),
+        ActuatorLaw::Position { kp, .. } => format!("{}*({u} - {})", number(kp), length()),
+        ActuatorLaw::Velocity { kv } => format!("{}*({u} - {})", number(kv), rate()),
+        ActuatorLaw::Damper { kv } => format!("-{}*{u}*{}", number(kv), rate()),
     };
     if let Some([lower, upper]) = actuator.force {
         force = format!("clamp({force}, {lower:?}, {upper:?})");

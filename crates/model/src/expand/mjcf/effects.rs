@@ -2,7 +2,7 @@
 //!
 //! Damping is −d v, friction −f v/√(v² + v₀²) as that of a URDF, a spring −k (s − s₀), a rotor −a dv/dt.
 
-use super::build::Source;
+use super::build::PlacedRobot;
 use super::drives::{self, sum};
 use super::tree::{Sections, keys, list, map, text, value, values};
 use crate::robots::algebra::{self, Pose, Value};
@@ -16,7 +16,7 @@ use crate::syntax::yaml::{Entry, Node, Value as Tree};
 /// Adds everything that acts; `limits` is the section of that name, `controls` the actuators' commands.
 pub fn add(
     sections: &mut Sections,
-    source: &Source,
+    source: &PlacedRobot,
     limits: Option<&Entry>,
     controls: &[Entry],
     diagnostics: &mut Diagnostics,
@@ -65,7 +65,7 @@ fn friction(joint: &Joint, key: &str, number: &Value) -> Node {
 }
 
 /// What acts in a joint of one coordinate.
-fn single(sections: &mut Sections, source: &Source, joint: &Joint) {
+fn single(sections: &mut Sections, source: &PlacedRobot, joint: &Joint) {
     let (span, name) = (&joint.span, &joint.name);
     if source.acts(&joint.damping) {
         let node = friction(joint, "viscous", &source.value(&joint.damping));
@@ -107,7 +107,7 @@ fn single(sections: &mut Sections, source: &Source, joint: &Joint) {
 }
 
 /// What acts in a ball or on a free body.
-fn several(sections: &mut Sections, source: &Source, joint: &Joint, diagnostics: &mut Diagnostics) {
+fn several(sections: &mut Sections, source: &PlacedRobot, joint: &Joint, diagnostics: &mut Diagnostics) {
     let span = &joint.span;
     for (number, what) in
         [(&joint.stiffness, "stiffness"), (&joint.armature, "armature"), (&joint.friction, "frictionloss")]
@@ -136,7 +136,7 @@ fn several(sections: &mut Sections, source: &Source, joint: &Joint, diagnostics:
 }
 
 /// Stops at the ends of ranges, as `limits` says.
-fn stops(sections: &mut Sections, source: &Source, limits: &Entry, diagnostics: &mut Diagnostics) {
+fn stops(sections: &mut Sections, source: &PlacedRobot, limits: &Entry, diagnostics: &mut Diagnostics) {
     let Some(impact) = limits.value.get("impact") else {
         let help = "e.g. `limits: { impact: { stiffness: 1e4 } }`".to_owned();
         diagnostics
@@ -162,7 +162,7 @@ fn stops(sections: &mut Sections, source: &Source, limits: &Entry, diagnostics: 
 }
 
 /// Spring and damper of a tendon.
-fn act(sections: &mut Sections, source: &Source, tendon: &Tendon) {
+fn act(sections: &mut Sections, source: &PlacedRobot, tendon: &Tendon) {
     if ![&tendon.stiffness, &tendon.damping, &tendon.friction].into_iter().any(|number| source.acts(number)) {
         return;
     }
@@ -190,7 +190,7 @@ fn act(sections: &mut Sections, source: &Source, tendon: &Tendon) {
 }
 
 /// A constraint of what stands in `<equality>`.
-fn couple(sections: &mut Sections, source: &Source, equality: &Equality) {
+fn couple(sections: &mut Sections, source: &PlacedRobot, equality: &Equality) {
     let (span, name) = (&equality.span, &equality.name);
     let node = match &equality.what {
         Coupling::Connect(ends) => {
@@ -219,7 +219,7 @@ fn couple(sections: &mut Sections, source: &Source, equality: &Equality) {
 }
 
 /// A point at an end of a constraint, by its name.
-fn end_of(sections: &mut Sections, source: &Source, equality: &Equality, at: &At, end: usize) -> Node {
+fn end_of(sections: &mut Sections, source: &PlacedRobot, equality: &Equality, at: &At, end: usize) -> Node {
     let span = &equality.span;
     let (holder, pose): (usize, Pose) = source.frame(at.body, at.position, &at.rotation);
     let body = &source.robot.bodies[holder].name;

@@ -13,7 +13,7 @@ mod tree;
 use std::collections::HashSet;
 use std::path::Path;
 
-use self::build::Source;
+use self::build::PlacedRobot;
 use self::tree::{Sections, text};
 use super::numbers::{self, Format};
 use super::overrides::Override;
@@ -96,7 +96,7 @@ pub fn write_out(report: &mut Report, root: &Node, model: &Path, overrides: &[(O
         let node = text(span, "spatial");
         sections.0.push(Entry { key: "space".to_owned(), key_span: span.clone(), value: node });
     }
-    let source = Source::new(&robot, &named, &words);
+    let source = PlacedRobot::new(&robot, &named, &words);
     let limits = own.iter().find(|entry| entry.key == "limits");
     let controls = own.iter().find(|entry| entry.key == "controls");
     let controls = controls.map_or(&[][..], |entry| report.entries(&entry.value, "controls"));

@@ -2,14 +2,14 @@
 
 use std::collections::HashSet;
 
-use super::build::Source;
+use super::build::PlacedRobot;
 use super::tree::{Sections, keys, text, value, values};
 use crate::robots::algebra::{Pose, Value};
 use crate::robots::mjcf::robot::{Coupling, MjcfType};
 use crate::syntax::yaml::Value as Tree;
 
 /// Start values, or where to look for them: joints that equalities hold are found.
-pub fn start(sections: &mut Sections, source: &Source) {
+pub fn start(sections: &mut Sections, source: &PlacedRobot) {
     let robot = source.robot;
     let said = said(sections);
     // A start at equilibrium gives no values.
@@ -52,7 +52,7 @@ pub fn start(sections: &mut Sections, source: &Source) {
 }
 
 /// Where assembly begins to look for every body.
-fn guesses(sections: &mut Sections, source: &Source, poses: &[Pose]) {
+fn guesses(sections: &mut Sections, source: &PlacedRobot, poses: &[Pose]) {
     for (index, body) in source.robot.bodies.iter().enumerate().skip(1) {
         if source.holders[index].0 != index {
             continue;
@@ -88,7 +88,7 @@ fn said(sections: &Sections) -> HashSet<String> {
 }
 
 /// Positions of joints and places of free bodies, where the model observes nothing.
-pub fn outputs(sections: &mut Sections, source: &Source) {
+pub fn outputs(sections: &mut Sections, source: &PlacedRobot) {
     if sections.0.iter().any(|entry| entry.key == "outputs" && !entry.value.is_null()) {
         return;
     }

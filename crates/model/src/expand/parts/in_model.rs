@@ -10,7 +10,7 @@ use crate::elements::effects::{self, EffectKind};
 use crate::elements::joints::JointKind;
 use crate::grammar::Image;
 use crate::syntax::codes::Code;
-use crate::syntax::frame::{Frame, PLACE, Turned, about_z, product, sum};
+use crate::syntax::frame::{InstanceFrame, PLACE, Turned, about_z, product, sum};
 use crate::syntax::scope::Scope;
 use crate::syntax::source::Span;
 use crate::syntax::suggest::clip;
@@ -18,7 +18,7 @@ use crate::syntax::yaml::{Entry, Node, Scalar, Value};
 
 /// Where the entries of an instance are in the sections of the model.
 #[derive(Default)]
-pub(super) struct Places {
+pub(super) struct InstanceEntries {
     pub(super) bodies: Range<usize>,
     pub(super) joints: Range<usize>,
     pub(super) effects: Range<usize>,
@@ -37,7 +37,7 @@ pub struct Inclined {
 
 impl Writer<'_, '_> {
     /// Makes images of bodies, joints and effects, and turns directions of the ground.
-    pub(super) fn image(&mut self, places: &Places, scope: &Arc<Scope>) {
+    pub(super) fn image(&mut self, places: &InstanceEntries, scope: &Arc<Scope>) {
         let effects = self.taken("effects", &places.effects);
         let mut images = Vec::with_capacity(effects.len());
         let frame = scope.frame().unwrap_or_default();
@@ -77,7 +77,7 @@ impl Writer<'_, '_> {
 
     /// Notes what acts on level ground in an instance of which the ground is not level. With a wheel in the plane that
     /// is across y.
-    fn check_level(&mut self, effect: &Entry, frame: Frame) {
+    fn check_level(&mut self, effect: &Entry, frame: InstanceFrame) {
         let Value::Mapping(kinds) = &effect.value.value else { return };
         let on_level_ground = |kind: &&Entry| EffectKind::scope_of(&kind.key) == Some(effects::Scope::LevelGround);
         let Some(kind) = kinds.first().filter(on_level_ground) else { return };
@@ -123,7 +123,7 @@ impl Writer<'_, '_> {
     }
 
     /// Holds the coordinates that a body does not have where the instance has them.
-    fn hold(&mut self, body: &mut Entry, frame: Frame, scope: &Arc<Scope>) {
+    fn hold(&mut self, body: &mut Entry, frame: InstanceFrame, scope: &Arc<Scope>) {
         let Value::Mapping(keys) = &mut body.value.value else { return };
         let Some(coordinates) = keys.iter().find(|key| key.key == "coordinates") else { return };
         let (span, at) = (coordinates.value.span.clone(), coordinates.key_span.clone());
@@ -165,7 +165,7 @@ impl Writer<'_, '_> {
 /// Coordinates held in the model's frame, of a body that has some lengths as coordinates, and perhaps turns.
 fn held_in_model(
     held: &[Entry],
-    frame: Frame,
+    frame: InstanceFrame,
     free: [bool; 3],
     turns: bool,
     scope: &Arc<Scope>,
@@ -199,7 +199,7 @@ fn held_in_model(
 
 /// Turns the directions of the ground that an effect has. One number about z is one about an axis of any direction in a
 /// frame that is turned in space, but for one about a joint's axis.
-fn turn_directions(effect: &mut Entry, frame: Frame, scope: &Arc<Scope>, is_on_turning: bool) {
+fn turn_directions(effect: &mut Entry, frame: InstanceFrame, scope: &Arc<Scope>, is_on_turning: bool) {
     let Value::Mapping(kinds) = &mut effect.value.value else { return };
     let [kind] = kinds.as_mut_slice() else { return };
     let in_body = kind.value.get("frame").and_then(Node::scalar).is_some_and(|frame| frame.text == "body");

@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use super::Writer;
-use super::in_model::Places;
+use super::in_model::InstanceEntries;
 use super::parameters::{is_shared, scope_of_shared};
-use super::placement::{GROUND, Placement};
+use super::placement::{GROUND, InstancePlacement};
 use crate::elements::effects::{self, EffectKind};
 use crate::elements::joints::JointKind;
 use crate::expand::instance::{Instance, InstanceKind};
@@ -14,7 +14,7 @@ use crate::grammar::mentions::NameKind;
 use crate::keys;
 use crate::syntax::codes::Code;
 use crate::syntax::scope::Scope;
-use crate::syntax::source::{Span, Within};
+use crate::syntax::source::{Span, TextInstance};
 use crate::syntax::suggest::{self, clip};
 use crate::syntax::yaml::{Entry, Node, Value};
 
@@ -33,7 +33,7 @@ struct New {
     definition: Arc<Entry>,
     /// Parameters that it gives.
     given: Vec<Entry>,
-    placement: Placement,
+    placement: InstancePlacement,
     /// Of the instance that it is in.
     outer: Option<Arc<Scope>>,
 }
@@ -157,7 +157,7 @@ impl Writer<'_, '_> {
     fn written_out(&mut self, new: &New, entry: &Entry, around: &mut Vec<String>) {
         let New { name, of, definition, placement, .. } = new;
         let prefix = format!("{name}.");
-        let within = Within { instance: name.clone(), of: of.clone(), span: entry.key_span.clone() };
+        let within = TextInstance { instance: name.clone(), of: of.clone(), span: entry.key_span.clone() };
         let shift = self.report.diagnostics.sources.copy(&definition.key_span, within);
         let entries_of = |section: &str| match definition.value.get(section).map(|node| &node.value) {
             Some(Value::Mapping(entries)) => entries.clone(),
@@ -204,7 +204,7 @@ impl Writer<'_, '_> {
         at: &Span,
         shift: usize,
         scope: &Arc<Scope>,
-    ) -> Places {
+    ) -> InstanceEntries {
         let copies = NAMED.map(|section| self.repeated(&entries_of(section), shift, Some(scope)));
         let [bodies, joints, effects, states, initial, guess] = copies;
         let (ground, bodies): (Vec<Entry>, Vec<Entry>) = bodies.into_iter().partition(|body| body.key == GROUND);
@@ -232,7 +232,7 @@ impl Writer<'_, '_> {
             }
             start..self.entries(section).len()
         });
-        Places { bodies, joints, effects, starts: [("initial", initial), ("guess", guess)] }
+        InstanceEntries { bodies, joints, effects, starts: [("initial", initial), ("guess", guess)] }
     }
 
     /// Whether an instance or a part of one may be called so.

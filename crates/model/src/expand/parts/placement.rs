@@ -9,7 +9,7 @@ use super::{Writer, mirror};
 use crate::grammar::report::Fields;
 use crate::keys;
 use crate::syntax::codes::Code;
-use crate::syntax::frame::{Frame, PLACE, Turned, about, about_z, product, signed, sum};
+use crate::syntax::frame::{InstanceFrame, PLACE, Turned, about, about_z, product, signed, sum};
 use crate::syntax::mirrors::Mirrors;
 use crate::syntax::scope::Scope;
 use crate::syntax::source::Span;
@@ -31,7 +31,7 @@ const ANGLES: [&str; 3] = ["roll", "pitch", "yaw"];
 
 /// What an instance says of its place.
 #[derive(Clone, Default)]
-pub(super) struct Placement {
+pub(super) struct InstancePlacement {
     mirrors: Mirrors,
     /// Its numbers with the names of their parameters behind `at.`, and their units.
     numbers: Vec<(String, Node, &'static str)>,
@@ -40,35 +40,35 @@ pub(super) struct Placement {
     pub(super) span: Span,
 }
 
-impl Placement {
+impl InstancePlacement {
     fn has(&self, name: &str) -> bool {
         self.numbers.iter().any(|(known, ..)| known == name)
     }
 
     /// The frame by itself.
-    fn frame(&self) -> Frame {
+    fn frame(&self) -> InstanceFrame {
         let turned = match self.quaternion {
             Some(_) => Turned::InSpace,
             None if self.has("angle") => Turned::ByAngle,
             None => Turned::Not,
         };
-        Frame { mirrors: self.mirrors, moved: AXES.map(|axis| self.has(axis)), turned }
+        InstanceFrame { mirrors: self.mirrors, moved: AXES.map(|axis| self.has(axis)), turned }
     }
 
     /// The frame in the model of an instance that is in another.
-    pub fn frame_in(&self, outer: Option<Frame>) -> Option<Frame> {
+    pub fn frame_in(&self, outer: Option<InstanceFrame>) -> Option<InstanceFrame> {
         let own = self.frame();
         match outer {
             Some(outer) => Some(outer.within(own)),
-            None => (own != Frame::default()).then_some(own),
+            None => (own != InstanceFrame::default()).then_some(own),
         }
     }
 }
 
 impl Writer<'_, '_> {
     /// Reads where an instance is; `prefix` stands before the names of its parts.
-    pub(super) fn placement(&mut self, prefix: &str, fields: &Fields) -> Option<Placement> {
-        let mut placement = Placement { span: fields.at.clone(), ..Placement::default() };
+    pub(super) fn placement(&mut self, prefix: &str, fields: &Fields) -> Option<InstancePlacement> {
+        let mut placement = InstancePlacement { span: fields.at.clone(), ..InstancePlacement::default() };
         if let Some(node) = fields.get("mirror") {
             placement.mirrors = Mirrors::across(self.report.choice(node, &[("x", 0), ("y", 1), ("z", 2)])?);
             placement.span = fields.key_span("mirror");
@@ -114,7 +114,7 @@ impl Writer<'_, '_> {
     }
 
     /// Reads the rotation of a place; its numbers are parameters, too.
-    fn rotation(&mut self, placement: &mut Placement, prefix: &str, node: &Node, at: Span) -> Option<()> {
+    fn rotation(&mut self, placement: &mut InstancePlacement, prefix: &str, node: &Node, at: Span) -> Option<()> {
         let (kind, fields) = self.report.kind_of_rotation(node, at)?;
         let value = fields.get(kind)?;
         let own = |name: &str| format!("{prefix}at.{name}");
@@ -143,7 +143,13 @@ impl Writer<'_, '_> {
     }
 
     /// Reads a rotation about an axis; that about z is an angle, as in the plane.
-    fn about_axis(&mut self, placement: &mut Placement, prefix: &str, fields: &Fields, axis: &Node) -> Option<()> {
+    fn about_axis(
+        &mut self,
+        placement: &mut InstancePlacement,
+        prefix: &str,
+        fields: &Fields,
+        axis: &Node,
+    ) -> Option<()> {
         let angle = self.report.required(fields, "angle")?;
         placement.numbers.push(("angle".to_owned(), angle.clone(), "rad"));
         let angle = format!("{prefix}at.angle");
@@ -180,9 +186,9 @@ impl Writer<'_, '_> {
     pub(super) fn parameters_of(
         &mut self,
         prefix: &str,
-        placement: &Placement,
+        placement: &InstancePlacement,
         outer: Option<&Scope>,
-        frame: Option<Frame>,
+        frame: Option<InstanceFrame>,
     ) {
         for (key, node, unit) in &placement.numbers {
             let span = node.span.clone();
@@ -235,7 +241,12 @@ impl Writer<'_, '_> {
 }
 
 /// The parameters of an instance's frame in the model, with their formulas.
-fn in_model(placement: &Placement, prefix: &str, outer: Option<&Scope>, frame: Frame) -> Vec<(String, String)> {
+fn in_model(
+    placement: &InstancePlacement,
+    prefix: &str,
+    outer: Option<&Scope>,
+    frame: InstanceFrame,
+) -> Vec<(String, String)> {
     let own = placement.frame();
     let (around, place) = outer.and_then(|outer| Some((outer.frame()?, outer.full(PLACE)))).unwrap_or_default();
     // The place of an image is the image of the place.
@@ -260,7 +271,7 @@ fn in_model(placement: &Placement, prefix: &str, outer: Option<&Scope>, frame: F
             let inner = match (&placement.quaternion, own.turned) {
                 (Some(p), _) => p.clone(),
                 (None, Turned::ByAngle) => about_z(&angle),
-                _ => Frame::default().quaternion(""),
+                _ => InstanceFrame::default().quaternion(""),
             };
             let [p0, x, y, z] = inner;
             let image = [(x, 0), (y, 1), (z, 2)].map(|(text, axis)| signed(&text, around.mirrors.turns_back(axis)));

@@ -2,12 +2,12 @@
 
 use std::sync::Arc;
 
-use super::in_model::Places;
+use super::in_model::InstanceEntries;
 use super::placement::AXES;
 use super::turned::{orient, replace, text, turn};
 use super::{Writer, mirror};
 use crate::syntax::codes::Code;
-use crate::syntax::frame::{Frame, PLACE, Turned, Vector, signed, sum};
+use crate::syntax::frame::{InstanceFrame, PLACE, TextVector, Turned, signed, sum};
 use crate::syntax::scope::Scope;
 use crate::syntax::yaml::Entry;
 
@@ -22,7 +22,7 @@ enum Of {
 
 impl Writer<'_, '_> {
     /// Gives start values of bodies in the model's frame, and those of joints in a mirror.
-    pub(super) fn starts(&mut self, places: &Places, scope: &Arc<Scope>) {
+    pub(super) fn starts(&mut self, places: &InstanceEntries, scope: &Arc<Scope>) {
         let Some(frame) = scope.frame() else { return };
         for (section, range) in &places.starts {
             let said = self.taken(section, range);
@@ -64,7 +64,7 @@ impl Writer<'_, '_> {
         }
     }
 
-    fn start(&mut self, start: &mut Entry, of: &Of, said: &[Entry], frame: Frame, scope: &Arc<Scope>) {
+    fn start(&mut self, start: &mut Entry, of: &Of, said: &[Entry], frame: InstanceFrame, scope: &Arc<Scope>) {
         let Some((owner, coordinate)) = start.key.rsplit_once('.').map(|(a, b)| (a.to_owned(), b.to_owned())) else {
             return;
         };
@@ -113,7 +113,7 @@ impl Writer<'_, '_> {
     }
 
     /// The start of a body's angle or of its rate.
-    fn angle(&mut self, start: &mut Entry, is_angle: bool, frame: Frame, scope: &Arc<Scope>) {
+    fn angle(&mut self, start: &mut Entry, is_angle: bool, frame: InstanceFrame, scope: &Arc<Scope>) {
         if frame.turned == Turned::InSpace {
             let name = own_name(start, scope);
             let message = format!("`{name}` is about the model's z, but the instance is turned in space");
@@ -136,7 +136,7 @@ impl Writer<'_, '_> {
         owner: &str,
         coordinate: &str,
         said: &[Entry],
-        frame: Frame,
+        frame: InstanceFrame,
         scope: &Arc<Scope>,
     ) {
         let (is_velocity, letter) = match coordinate.strip_prefix('v') {
@@ -146,7 +146,7 @@ impl Writer<'_, '_> {
         let Some(axis) = AXES.iter().position(|axis| *axis == letter) else { return };
         let is_rate = owner.ends_with(".omega");
         let row = frame.rotation(PLACE)[axis].clone();
-        let mut vector: Vector = ["0"; 3].map(str::to_owned);
+        let mut vector: TextVector = ["0"; 3].map(str::to_owned);
         for other in (0..3).filter(|&other| row[other] != "0") {
             let wanted = format!("{}{}", &coordinate[..coordinate.len() - 1], AXES[other]);
             let is_wanted = |known: &&Entry| {

@@ -4,13 +4,13 @@ use std::sync::Arc;
 
 use super::mirror;
 use super::placement::{AXES, scalar};
-use crate::syntax::frame::{Frame, PLACE, Turned, about, product, signed};
+use crate::syntax::frame::{InstanceFrame, PLACE, Turned, about, product, signed};
 use crate::syntax::scope::Scope;
 use crate::syntax::source::Span;
 use crate::syntax::yaml::{Entry, Node, Value};
 
 /// Turns a list of components; a number stays, and so does a list that is none.
-pub(super) fn turn(node: &mut Node, frame: Frame, scope: &Arc<Scope>) {
+pub(super) fn turn(node: &mut Node, frame: InstanceFrame, scope: &Arc<Scope>) {
     let span = node.span.clone();
     let scope = scope_of(node, scope);
     let Value::Sequence(items) = &mut node.value else { return };
@@ -23,7 +23,7 @@ pub(super) fn turn(node: &mut Node, frame: Frame, scope: &Arc<Scope>) {
 }
 
 /// Turns an orientation.
-pub(super) fn orient(node: &mut Node, frame: Frame, scope: &Arc<Scope>) {
+pub(super) fn orient(node: &mut Node, frame: InstanceFrame, scope: &Arc<Scope>) {
     let Some(own) = quaternion(node) else { return };
     let scope = scope_of(node, scope);
     let span = node.span.clone();

@@ -39,14 +39,14 @@ const DEVIATION: [&str; 4] = ["tolerance", "interval", "plus", "minus"];
 
 /// A tree in the making.
 #[derive(Clone, Default)]
-pub struct Draft {
+pub struct TreeDraft {
     pub entries: Vec<Entry>,
     /// Section and name.
     pub out: HashSet<(&'static str, String)>,
     pub robot: OmittedEffects,
 }
 
-impl Draft {
+impl TreeDraft {
     /// Lays a scene's changes over the tree.
     pub fn lay(&mut self, report: &mut Report, fields: &Fields) {
         if let Some(node) = fields.get("without") {

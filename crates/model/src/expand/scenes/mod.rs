@@ -5,7 +5,7 @@
 
 pub mod draft;
 
-use self::draft::Draft;
+use self::draft::TreeDraft;
 use crate::expand::tuning::TUNING;
 use crate::grammar::mentions::NameKind;
 use crate::grammar::report::{Fields, Report};
@@ -60,7 +60,7 @@ impl OmittedEffects {
 /// The model and its scenes, none of them laid over it yet.
 pub struct Scenes<'n> {
     root: &'n Node,
-    model: Draft,
+    model: TreeDraft,
     layers: Vec<Layer<'n>>,
 }
 
@@ -75,7 +75,7 @@ struct Layer<'n> {
 impl<'n> Scenes<'n> {
     /// Reads the omitted parts of a model, and its scenes; errors of their names are reported.
     pub fn read(report: &mut Report, root: &'n Node) -> Self {
-        let mut scenes = Self { root, model: Draft::default(), layers: Vec::new() };
+        let mut scenes = Self { root, model: TreeDraft::default(), layers: Vec::new() };
         let Value::Mapping(entries) = &root.value else { return scenes };
         let of_scenes = |entry: &&Entry| matches!(entry.key.as_str(), "scenes" | "without");
         scenes.model.entries = entries.iter().filter(|entry| !of_scenes(entry)).cloned().collect();
@@ -119,7 +119,7 @@ impl<'n> Scenes<'n> {
         self.variant(draft, Some(self.layers[scene].entry.key.clone()))
     }
 
-    fn variant(&self, draft: Draft, scene: Option<String>) -> Variant {
+    fn variant(&self, draft: TreeDraft, scene: Option<String>) -> Variant {
         let partial = scene.is_some() || !draft.out.is_empty() || draft.robot.leaves_out_any();
         let robot = draft.robot.clone();
         let left_out = draft.out.iter().map(|(_, name)| name.clone()).collect();

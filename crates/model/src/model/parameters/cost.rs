@@ -1,7 +1,7 @@
 //! `cost`: what an uncertain parameter's tolerance costs, for `mbint allocate`.
 
 use super::law::positive;
-use super::{Draft, interval};
+use super::{ParameterDraft, interval};
 use crate::grammar::dimension::KnownDimension;
 use crate::grammar::quantity::Dimension;
 use crate::keys;
@@ -13,7 +13,13 @@ use crate::syntax::suggest::clip;
 use crate::syntax::yaml::{Entry, Node, Scalar, Value};
 
 /// Reads a cost of a parameter with this nominal value.
-pub fn read(reader: &mut Reader, draft: &Draft, node: &Node, nominal: f64, kind: &mut KnownDimension) -> Option<Cost> {
+pub fn read(
+    reader: &mut Reader,
+    draft: &ParameterDraft,
+    node: &Node,
+    nominal: f64,
+    kind: &mut KnownDimension,
+) -> Option<Cost> {
     if let Some(scalar) = node.scalar() {
         if scalar.text == "fixed" {
             return Some(Cost::Fixed);
@@ -51,7 +57,13 @@ pub fn read(reader: &mut Reader, draft: &Draft, node: &Node, nominal: f64, kind:
 }
 
 /// Half the width of a grade's tolerance zone: of ISO 286, or as it is written.
-fn tolerance(reader: &mut Reader, draft: &Draft, entry: &Entry, size: f64, kind: &mut KnownDimension) -> Option<f64> {
+fn tolerance(
+    reader: &mut Reader,
+    draft: &ParameterDraft,
+    entry: &Entry,
+    size: f64,
+    kind: &mut KnownDimension,
+) -> Option<f64> {
     let Some(grade) = entry.key.strip_prefix("IT") else {
         let scalar = Scalar::plain(&entry.key, None);
         let node = Node { span: entry.key_span.clone(), value: Value::Scalar(scalar) };

@@ -4,7 +4,7 @@
 use symdiff::{Binary, Formula};
 
 use super::spec::Spec;
-use super::{Draft, interval, law, says_more, settle, unit};
+use super::{ParameterDraft, interval, law, says_more, settle, unit};
 use crate::expand::overrides::Override;
 use crate::grammar::dimension::KnownDimension;
 use crate::model::description::{Parameter, ParameterValue};
@@ -34,7 +34,7 @@ pub fn owner(entries: &[Entry], name: &str) -> Option<usize> {
 
 /// Adds the deviations of uncertain parameters whose values depend on uncertain ones. They may be set like parameters
 /// of the file.
-pub fn add_deviations(reader: &mut Reader, drafts: &mut Vec<Draft>, overrides: &[(Override, Span)]) {
+pub fn add_deviations(reader: &mut Reader, drafts: &mut Vec<ParameterDraft>, overrides: &[(Override, Span)]) {
     let varies = varying(reader, drafts);
     let own = drafts.len();
     for index in 0..own {
@@ -52,7 +52,7 @@ pub fn add_deviations(reader: &mut Reader, drafts: &mut Vec<Draft>, overrides: &
         let unit = spec.unit.as_ref().and_then(|node| unit(reader, node));
         let value = spec.value.as_ref().and_then(|node| reader.written(node));
         let deviation = drafts.len();
-        drafts.push(Draft { spec, name_span, unit, value, uses: Vec::new(), deviation: None });
+        drafts.push(ParameterDraft { spec, name_span, unit, value, uses: Vec::new(), deviation: None });
         let value = ParameterValue::Formula(Formula::number(f64::NAN));
         reader.model.parameters.push(Parameter { name, unit: String::new(), value });
         reader.used.push(false);
@@ -70,9 +70,9 @@ pub fn add_deviations(reader: &mut Reader, drafts: &mut Vec<Draft>, overrides: &
 }
 
 /// Whether each parameter is uncertain or free, or depends on one that is.
-fn varying(reader: &Reader, drafts: &[Draft]) -> Vec<bool> {
+fn varying(reader: &Reader, drafts: &[ParameterDraft]) -> Vec<bool> {
     let is_free = |index: usize| reader.free.contains(&reader.model.parameters[index].name);
-    let own = |(index, draft): (usize, &Draft)| draft.spec.is_uncertain() || is_free(index);
+    let own = |(index, draft): (usize, &ParameterDraft)| draft.spec.is_uncertain() || is_free(index);
     let mut varies: Vec<bool> = drafts.iter().enumerate().map(own).collect();
     let mut users = vec![Vec::new(); drafts.len()];
     for (index, draft) in drafts.iter().enumerate() {
@@ -104,7 +104,7 @@ pub struct Deviating<'f> {
 /// Gives such a parameter its formula, and its deviation an interval; those that it uses have theirs.
 pub fn finish(
     reader: &mut Reader,
-    draft: &Draft,
+    draft: &ParameterDraft,
     Deviating { index, deviation, formula, nominal }: Deviating<'_>,
     kind: &mut KnownDimension,
     values: &mut [f64],

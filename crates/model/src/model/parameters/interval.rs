@@ -2,7 +2,7 @@
 
 use symdiff::formula::Term;
 
-use super::{Draft, Spec};
+use super::{ParameterDraft, Spec};
 use crate::grammar::dimension::KnownDimension;
 use crate::grammar::fits::ToleranceClass;
 use crate::grammar::formulas::{Written, evaluate};
@@ -16,7 +16,12 @@ use crate::syntax::suggest;
 use crate::syntax::yaml::Node;
 
 /// Nominal, lower and upper value.
-pub fn bounds(reader: &mut Reader, draft: &Draft, nominal: Option<f64>, kind: &mut KnownDimension) -> Option<[f64; 3]> {
+pub fn bounds(
+    reader: &mut Reader,
+    draft: &ParameterDraft,
+    nominal: Option<f64>,
+    kind: &mut KnownDimension,
+) -> Option<[f64; 3]> {
     let Spec { value, tolerance, interval, plus, minus, class, .. } = &draft.spec;
     if draft.spec.contradictory {
         return None;
@@ -91,7 +96,7 @@ fn by_class(reader: &mut Reader, node: &Node, size: Option<f64>, kind: &KnownDim
 /// How far the value may deviate upwards and downwards.
 pub fn deviations(
     reader: &mut Reader,
-    draft: &Draft,
+    draft: &ParameterDraft,
     nominal: Option<f64>,
     kind: &mut KnownDimension,
 ) -> Option<(f64, f64)> {
@@ -122,7 +127,7 @@ pub fn deviations(
 /// How far a value may deviate: `1%` of it, or a quantity.
 fn deviation(
     reader: &mut Reader,
-    draft: &Draft,
+    draft: &ParameterDraft,
     node: Option<&Node>,
     nominal: Option<f64>,
     kind: &mut KnownDimension,
@@ -145,7 +150,7 @@ fn deviation(
 }
 
 /// A number in the parameter's unit, or with its own.
-pub fn bare_number(reader: &mut Reader, draft: &Draft, node: &Node, kind: &mut KnownDimension) -> Option<f64> {
+pub fn bare_number(reader: &mut Reader, draft: &ParameterDraft, node: &Node, kind: &mut KnownDimension) -> Option<f64> {
     match reader.written(node)? {
         Written::Quantity { value, unit } => {
             match kind.dimension() {

@@ -1,6 +1,6 @@
 //! `distribution`: the law of an uncertain parameter.
 
-use super::Draft;
+use super::ParameterDraft;
 use super::interval;
 use crate::grammar::dimension::KnownDimension;
 use crate::keys;
@@ -59,7 +59,7 @@ pub fn named(name: &str, LawInterval { nominal, lower, upper, .. }: LawInterval)
 /// Reads a law over an interval; `kind` is the parameter's dimension.
 pub fn read(
     reader: &mut Reader,
-    draft: &Draft,
+    draft: &ParameterDraft,
     node: &Node,
     place: LawInterval,
     kind: &mut KnownDimension,
@@ -180,7 +180,7 @@ pub fn positive(reader: &mut Reader, node: &Node) -> Option<f64> {
 /// Points of a density, ascending, within the interval.
 fn table(
     reader: &mut Reader,
-    draft: &Draft,
+    draft: &ParameterDraft,
     node: &Node,
     place: LawInterval,
     kind: &mut KnownDimension,

@@ -1,6 +1,6 @@
 //! The order in which parameters are evaluated.
 
-use super::Draft;
+use super::ParameterDraft;
 use crate::model::names::Reader;
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
@@ -8,7 +8,7 @@ use crate::syntax::suggest;
 
 /// An order in which every parameter stands behind those it uses: the file's, where that is one. Circles are
 /// reported, and broken where they close.
-pub fn in_order(reader: &mut Reader, drafts: &[Draft]) -> Vec<usize> {
+pub fn in_order(reader: &mut Reader, drafts: &[ParameterDraft]) -> Vec<usize> {
     #[derive(Clone, Copy, PartialEq)]
     enum Mark {
         New,
@@ -57,7 +57,7 @@ pub fn in_order(reader: &mut Reader, drafts: &[Draft]) -> Vec<usize> {
     order
 }
 
-fn report_circle(reader: &mut Reader, drafts: &[Draft], circle: &[usize]) {
+fn report_circle(reader: &mut Reader, drafts: &[ParameterDraft], circle: &[usize]) {
     let name = |index: usize| suggest::clip(&reader.model.parameters[index].name);
     let shown: Vec<String> = circle.iter().take(8).map(|&index| name(index)).collect();
     let more = if circle.len() > 8 { " → …" } else { "" };

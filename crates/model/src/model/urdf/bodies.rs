@@ -6,7 +6,7 @@
 //!
 //! The other links are frames at points of it, named after them.
 
-use super::source::{Source, formula, formulas};
+use super::source::{ParsedUrdf, formula, formulas};
 use crate::grammar::Coordinate;
 use crate::model::description::{Body, Inertia};
 use crate::model::names::Reader;
@@ -29,7 +29,7 @@ pub struct Group {
 }
 
 /// The body of links that are welded together.
-pub fn body(reader: &mut Reader, source: &Source, group: &Group, of_link: &[(usize, Pose)]) -> Body {
+pub fn body(reader: &mut Reader, source: &ParsedUrdf, group: &Group, of_link: &[(usize, Pose)]) -> Body {
     let root = &source.robot.links[group.links[0]];
     let parts = parts(source, group, of_link);
     let masses: Vec<Value> = parts.iter().map(|part| part.mass.clone()).collect();
@@ -93,7 +93,7 @@ fn is_determined(inertia: &[Vector; 3], joint: Option<&Joint>) -> bool {
 }
 
 /// The links that have mass or inertia, or of which either is a parameter.
-fn parts(source: &Source, group: &Group, of_link: &[(usize, Pose)]) -> Vec<MassPart> {
+fn parts(source: &ParsedUrdf, group: &Group, of_link: &[(usize, Pose)]) -> Vec<MassPart> {
     let massive = group.links.iter().filter_map(|&link| {
         let inertial = source.robot.links[link].inertial.as_ref()?;
         let acts = |number: &Number| number.value != 0.0 || source.named.contains(&number.name);

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use super::bodies::{Group, body};
 use super::joints::{joint, mimic};
-use super::source::{Built, Source, coordinate, point};
+use super::source::{Built, ParsedUrdf, coordinate, point};
 use crate::grammar::{JointCoordinate, PointRef};
 use crate::model::description::{RobotTree, TreeJoint, TreeLink};
 use crate::model::names::Reader;
@@ -15,7 +15,7 @@ use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 
 /// Adds bodies and joints to the model.
-pub fn declare(reader: &mut Reader, source: &Source) -> Built {
+pub fn declare(reader: &mut Reader, source: &ParsedUrdf) -> Built {
     let robot = source.robot;
     let mut groups = vec![Group { links: vec![robot.root], behind: None, body: None }];
     let mut of_link = vec![(0, Pose::identity()); robot.links.len()];
@@ -70,7 +70,7 @@ pub fn declare(reader: &mut Reader, source: &Source) -> Built {
 }
 
 /// Ends of the chain without mass, on which nothing acts.
-fn left_out(reader: &mut Reader, source: &Source, groups: &[Group], of_link: &[(usize, Pose)]) -> Vec<bool> {
+fn left_out(reader: &mut Reader, source: &ParsedUrdf, groups: &[Group], of_link: &[(usize, Pose)]) -> Vec<bool> {
     let robot = source.robot;
     let mut left_out = vec![false; groups.len()];
     let mut holds = vec![false; groups.len()];
@@ -96,7 +96,7 @@ fn left_out(reader: &mut Reader, source: &Source, groups: &[Group], of_link: &[(
 }
 
 /// The tree as the file has it.
-fn tree(source: &Source, built: &Built) -> RobotTree {
+fn tree(source: &ParsedUrdf, built: &Built) -> RobotTree {
     let robot = source.robot;
     let mut depth = vec![0; robot.links.len()];
     let above: HashMap<usize, &UrdfJoint> = robot.joints.iter().map(|joint| (joint.child, joint)).collect();

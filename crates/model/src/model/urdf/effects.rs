@@ -7,7 +7,7 @@
 use crate::grammar::{FrictionMode, JointCoordinate, OnJoint, Quantity, Value};
 use symdiff::Formula;
 
-use super::source::{Built, Source, coordinate, formula};
+use super::source::{Built, ParsedUrdf, coordinate, formula};
 use crate::elements::effects::joint_friction::FrictionJoint;
 use crate::elements::effects::{DryFriction, EffectKind, Impact, JointFriction, Stop};
 use crate::expand::scenes::{self, OmittedEffects};
@@ -32,7 +32,7 @@ pub struct RobotEffect<'r> {
 /// What acts in the joints.
 pub fn read<'r>(
     reader: &mut Reader,
-    source: &Source<'r>,
+    source: &ParsedUrdf<'r>,
     built: &Built,
     limits: Option<(&Node, Span)>,
 ) -> Vec<RobotEffect<'r>> {
@@ -70,7 +70,7 @@ fn is_limited(joint: &Joint) -> bool {
 }
 
 /// Damping and friction, where the file has them.
-fn friction<'r>(reader: &mut Reader, source: &Source<'r>, joint: &'r Joint, found: usize) -> Vec<RobotEffect<'r>> {
+fn friction<'r>(reader: &mut Reader, source: &ParsedUrdf<'r>, joint: &'r Joint, found: usize) -> Vec<RobotEffect<'r>> {
     let acts = |number: &Number| number.value != 0.0 || source.named.contains(&number.name);
     let mut effects = Vec::new();
     for (number, what) in [(&joint.damping, "damping"), (&joint.friction, "friction")] {
@@ -99,7 +99,7 @@ fn friction<'r>(reader: &mut Reader, source: &Source<'r>, joint: &'r Joint, foun
 }
 
 /// How stops of joints of a kind push back; nothing where there are none.
-fn impact(reader: &mut Reader, source: &Source, node: &Node, at: &Span, kind: UrdfJointType) -> Option<Impact> {
+fn impact(reader: &mut Reader, source: &ParsedUrdf, node: &Node, at: &Span, kind: UrdfJointType) -> Option<Impact> {
     let coordinate = if kind.turns() { JointCoordinate::Angle } else { JointCoordinate::Displacement };
     if !source.robot.joints.iter().any(|joint| joint.kind == kind && is_limited(joint)) {
         return None;
@@ -112,7 +112,7 @@ fn impact(reader: &mut Reader, source: &Source, node: &Node, at: &Span, kind: Ur
 
 fn stop<'r>(
     reader: &mut Reader,
-    source: &Source<'r>,
+    source: &ParsedUrdf<'r>,
     joint: &Joint,
     limits: &'r Limits,
     on: OnJoint,
@@ -125,7 +125,7 @@ fn stop<'r>(
 }
 
 /// Adds the effects that are not omitted.
-pub fn add(reader: &mut Reader, source: &Source, effects: Vec<RobotEffect>, left_out: &OmittedEffects) {
+pub fn add(reader: &mut Reader, source: &ParsedUrdf, effects: Vec<RobotEffect>, left_out: &OmittedEffects) {
     for (name, span) in left_out.given() {
         if !effects.iter().any(|known| known.effect.name == *name) {
             let robot = effects.iter().map(|known| known.effect.name.clone());

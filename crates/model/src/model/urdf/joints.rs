@@ -2,7 +2,7 @@
 
 use symdiff::Formula;
 
-use super::source::{Built, Source, coordinate, formula, point};
+use super::source::{Built, ParsedUrdf, coordinate, formula, point};
 use crate::elements::joints::{Equation, Fixed, Gear, JointKind, Planar, Prismatic, Revolute};
 use crate::grammar::{Axis, Direction, PointRef, Rotating};
 use crate::model::description::Joint;
@@ -11,7 +11,7 @@ use crate::robots::algebra::{self, Value};
 use crate::robots::urdf::robot::UrdfJointType;
 
 /// Adds a joint that moves, or holds what the model asks for, with the frame it is at on its parent.
-pub fn joint(reader: &mut Reader, source: &Source, built: &Built, index: usize) -> Option<usize> {
+pub fn joint(reader: &mut Reader, source: &ParsedUrdf, built: &Built, index: usize) -> Option<usize> {
     let joint = &source.robot.joints[index];
     let (parent, pose) = &built.places[joint.parent];
     let (parent, child) = ((*parent)?, built.places[joint.child].0?);
@@ -46,7 +46,7 @@ fn unit(axis: [f64; 3]) -> [f64; 3] {
 }
 
 /// Adds the constraint of a joint that mimics another.
-pub fn mimic(reader: &mut Reader, source: &Source, built: &Built, index: usize) {
+pub fn mimic(reader: &mut Reader, source: &ParsedUrdf, built: &Built, index: usize) {
     let joint = &source.robot.joints[index];
     let Some(mimic) = &joint.mimic else { return };
     let (Some(this), Some(other)) = (built.joints[index], built.joints[mimic.joint]) else { return };

@@ -2,7 +2,7 @@
 
 use symdiff::{Binary, Formula};
 
-use super::Declared;
+use super::DeclaredRobot;
 use super::source::{Built, formula, formulas};
 use crate::grammar::{PointRef, Rotation};
 use crate::keys;
@@ -46,7 +46,7 @@ pub fn declare(reader: &mut Reader, built: &Built, of_links: &[(usize, &Entry)])
     }
 }
 
-impl Declared {
+impl DeclaredRobot {
     /// Reads the points of links, once parameters are known.
     pub fn read_points(&self, reader: &mut Reader) {
         for (link, entry) in self.urdf.entries_of_links() {

@@ -15,7 +15,7 @@ mod start;
 use std::collections::HashSet;
 use std::path::Path;
 
-use self::source::{Built, Source};
+use self::source::{Built, ParsedUrdf};
 use crate::expand::numbers::{self, Format};
 use crate::expand::overrides::Override;
 use crate::expand::scenes::OmittedEffects;
@@ -54,7 +54,7 @@ pub struct Urdf {
 }
 
 /// With its bodies and joints in the model.
-pub struct Declared {
+pub struct DeclaredRobot {
     urdf: Urdf,
     named: HashSet<String>,
     built: Built,
@@ -119,7 +119,7 @@ impl Urdf {
     }
 
     /// Adds the robot's bodies and joints to the model, behind those that it has.
-    pub fn declare(self, reader: &mut Reader, parameters: &[Entry]) -> Declared {
+    pub fn declare(self, reader: &mut Reader, parameters: &[Entry]) -> DeclaredRobot {
         let named: HashSet<String> =
             parameters.iter().filter(|entry| is_number(&entry.key)).map(|entry| entry.key.clone()).collect();
         for joint in &self.robot.joints {
@@ -128,21 +128,21 @@ impl Urdf {
                 reader.diagnostics.push(Diagnostic::error(Code::NameTaken, joint.span.clone(), message));
             }
         }
-        let source = Source { robot: &self.robot, floating: self.floating, words: &self.words, named: &named };
+        let source = ParsedUrdf { robot: &self.robot, floating: self.floating, words: &self.words, named: &named };
         let built = build::declare(reader, &source);
         let of_links: Vec<(usize, &Entry)> = self.entries_of_links().collect();
         link_points::declare(reader, &built, &of_links);
         let at = self.robot.links[self.robot.root].span.clone();
-        Declared { urdf: self, named, built, at }
+        DeclaredRobot { urdf: self, named, built, at }
     }
 }
 
-impl Declared {
+impl DeclaredRobot {
     /// Effects that are not left out, start values and, where the model has none, outputs; and whether masses stay
     /// positive. `limits` is the section of that name.
     pub fn finish(&self, reader: &mut Reader, left_out: &OmittedEffects, limits: Option<(&Node, Span)>, observe: bool) {
         let Urdf { robot, floating, words, .. } = &self.urdf;
-        let source = Source { robot, floating: *floating, words, named: &self.named };
+        let source = ParsedUrdf { robot, floating: *floating, words, named: &self.named };
         let effects = effects::read(reader, &source, &self.built, limits);
         effects::add(reader, &source, effects, left_out);
         start::start(reader, &source, &self.built);

@@ -16,7 +16,7 @@ use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 
 /// Parsed URDF, and the treatment of its numbers.
-pub struct Source<'s> {
+pub struct ParsedUrdf<'s> {
     pub robot: &'s Robot,
     pub floating: bool,
     /// Words of the model that names the file.
@@ -25,7 +25,7 @@ pub struct Source<'s> {
     pub named: &'s HashSet<String>,
 }
 
-impl Source<'_> {
+impl ParsedUrdf<'_> {
     pub fn value(&self, number: &Number) -> Value {
         if self.named.contains(&number.name) { Value::Text(number.name.clone()) } else { Value::Number(number.value) }
     }

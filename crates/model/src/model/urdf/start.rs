@@ -4,7 +4,7 @@ use std::collections::HashSet;
 
 use symdiff::Formula;
 
-use super::source::{Built, Source, coordinate, formula, formulas};
+use super::source::{Built, ParsedUrdf, coordinate, formula, formulas};
 use crate::grammar::quantity::Dimension;
 use crate::grammar::{Coordinate, Rotation, TimeOrder};
 use crate::model::description::{Output, StartValue};
@@ -14,7 +14,7 @@ use crate::robots::number::Number;
 use crate::robots::urdf::robot::UrdfJointType;
 
 /// The zero configuration, for what the model says nothing of.
-pub fn start(reader: &mut Reader, source: &Source, built: &Built) {
+pub fn start(reader: &mut Reader, source: &ParsedUrdf, built: &Built) {
     let robot = source.robot;
     let mut poses = vec![Pose::identity(); robot.links.len()];
     let said: HashSet<usize> = reader.model.initial.iter().chain(&reader.model.guess).filter_map(joint_of).collect();
@@ -75,7 +75,7 @@ fn body_of(value: &StartValue) -> Option<usize> {
 }
 
 /// Outputs where the model gives none: the joints' positions, and the place of a base that floats.
-pub fn outputs(reader: &mut Reader, source: &Source, built: &Built) {
+pub fn outputs(reader: &mut Reader, source: &ParsedUrdf, built: &Built) {
     let mut push = |name: String, text: String, dimension: Dimension| {
         let formula = formula(reader, &Value::Text(text));
         reader.model.outputs.push(Output {

@@ -5,7 +5,7 @@ mod solid;
 
 use std::path::Path;
 
-pub use self::solid::{Faults, Measured, Way, faults, measure};
+pub use self::solid::{Faults, SolidMeasures, Way, faults, measure};
 use crate::syntax::mesh_file;
 pub use crate::syntax::mesh_file::Triangle;
 

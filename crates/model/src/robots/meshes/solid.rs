@@ -26,7 +26,7 @@ pub enum Way {
 
 /// Volume, or area of a shell; centre; ∫ (x² 1 − x xᵀ) about it: of density one.
 #[derive(Clone, Copy, Debug)]
-pub struct Measured {
+pub struct SolidMeasures {
     pub size: f64,
     pub center: [f64; 3],
     pub inertia: [[f64; 3]; 3],
@@ -59,7 +59,7 @@ fn area([a, b, c]: Triangle) -> f64 {
 }
 
 /// What triangles make up. The size of a wrong mesh may be zero, negative or no number.
-pub fn measure(triangles: &[Triangle], way: Way) -> Measured {
+pub fn measure(triangles: &[Triangle], way: Way) -> SolidMeasures {
     let middle = middle(triangles);
     let share = |[a, b, c]: Triangle| match way {
         Way::Exact => dot(a, cross(b, c)) / 6.0,
@@ -92,7 +92,7 @@ pub fn measure(triangles: &[Triangle], way: Way) -> Measured {
     }
     let trace = squares[0][0] + squares[1][1] + squares[2][2];
     let inertia = std::array::from_fn(|i| std::array::from_fn(|k| f64::from(i == k) * trace - squares[i][k]));
-    Measured { size, center, inertia }
+    SolidMeasures { size, center, inertia }
 }
 
 /// Centre of the surface.

@@ -1,12 +1,12 @@
 //! Actuators: their targets, their law, memory and ranges.
 
-use super::couplings::Reader;
+use super::couplings::CouplingReader;
 use super::document::{Attribute, Item};
-use super::robot::{Actuator, Law, Length, Memory};
+use super::robot::{Actuator, ActuatorLaw, Length, Memory};
 use super::values::Values;
 use crate::syntax::codes::Code;
 
-impl Reader<'_, '_, '_> {
+impl CouplingReader<'_, '_, '_> {
     /// Reads an actuator.
     pub fn actuator(&mut self, item: &Item) -> Option<()> {
         let name = self.name(item, format!("actuator_{}", self.robot.actuators.len()));
@@ -57,7 +57,12 @@ impl Reader<'_, '_, '_> {
         Some(())
     }
 
-    fn law(&mut self, item: &Item, get: &dyn Fn(&Values, &str) -> Option<Attribute>, name: &str) -> Option<Law> {
+    fn law(
+        &mut self,
+        item: &Item,
+        get: &dyn Fn(&Values, &str) -> Option<Attribute>,
+        name: &str,
+    ) -> Option<ActuatorLaw> {
         let values = &mut *self.values;
         let list = |values: &mut Values, key: &str, default: f64| numbers(values, get, key, default);
         let number = |values: &mut Values, key: &str, default: f64| {
@@ -65,16 +70,16 @@ impl Reader<'_, '_, '_> {
             values.number(item, get(values, key).as_ref(), format!("actuator.{name}.{key}"), value, "")
         };
         Some(match item.tag.as_str() {
-            "motor" => Law::Affine { gain: 1.0, bias: [0.0; 3] },
-            "position" => Law::Position { kp: number(values, "kp", 1.0), kv: number(values, "kv", 0.0) },
-            "velocity" => Law::Velocity { kv: number(values, "kv", 1.0) },
-            "damper" => Law::Damper { kv: number(values, "kv", 1.0) },
+            "motor" => ActuatorLaw::Affine { gain: 1.0, bias: [0.0; 3] },
+            "position" => ActuatorLaw::Position { kp: number(values, "kp", 1.0), kv: number(values, "kv", 0.0) },
+            "velocity" => ActuatorLaw::Velocity { kv: number(values, "kv", 1.0) },
+            "damper" => ActuatorLaw::Damper { kv: number(values, "kv", 1.0) },
             "cylinder" => {
                 let area = list(values, "area", 1.0)[0];
                 let of_diameter = |diameter: f64| std::f64::consts::FRAC_PI_4 * diameter * diameter;
                 let gain = get(values, "diameter").map_or(area, |_| of_diameter(list(values, "diameter", 0.0)[0]));
                 let bias = list(values, "bias", 0.0);
-                Law::Affine { gain, bias: [0, 1, 2].map(|index| bias.get(index).copied().unwrap_or(0.0)) }
+                ActuatorLaw::Affine { gain, bias: [0, 1, 2].map(|index| bias.get(index).copied().unwrap_or(0.0)) }
             }
             _ => {
                 let mut plain = |key: &str, words: &[(&str, bool)]| match get(values, key) {
@@ -85,7 +90,7 @@ impl Reader<'_, '_, '_> {
                 let is_affine = plain("biastype", &[("none", false), ("affine", true)])?;
                 let (gain, bias) = (list(values, "gainprm", 1.0)[0], list(values, "biasprm", 0.0));
                 let at = |index: usize| bias.get(index).copied().filter(|_| is_affine).unwrap_or(0.0);
-                Law::Affine { gain, bias: [at(0), at(1), at(2)] }
+                ActuatorLaw::Affine { gain, bias: [at(0), at(1), at(2)] }
             }
         })
     }
@@ -96,10 +101,10 @@ impl Reader<'_, '_, '_> {
         &mut self,
         item: &Item,
         get: &dyn Fn(&Values, &str) -> Option<Attribute>,
-        law: &Law,
+        law: &ActuatorLaw,
     ) -> Option<f64> {
         match law {
-            Law::Position { kv, .. } => {
+            ActuatorLaw::Position { kv, .. } => {
                 let found = get(self.values, "dampratio")?;
                 let [ratio] = self.values.exact::<1>(&found)?;
                 if ratio < 0.0 {
@@ -115,10 +120,10 @@ impl Reader<'_, '_, '_> {
                 }
                 Some(ratio).filter(|ratio| *ratio > 0.0)
             }
-            Law::Affine { gain, bias: [_, by_length, by_rate] } => {
+            ActuatorLaw::Affine { gain, bias: [_, by_length, by_rate] } => {
                 Some(*by_rate).filter(|by_rate| *by_rate > 0.0 && *gain == -by_length)
             }
-            Law::Velocity { .. } | Law::Damper { .. } => None,
+            ActuatorLaw::Velocity { .. } | ActuatorLaw::Damper { .. } => None,
         }
     }
 

@@ -4,13 +4,13 @@ use std::collections::{BTreeMap, HashMap};
 use std::path::{Path, PathBuf};
 
 use super::document::{Attribute, Item};
-use crate::robots::meshes::Measured;
+use crate::robots::meshes::SolidMeasures;
 use crate::syntax::source::Span;
-use crate::syntax::within::Within;
+use crate::syntax::within::AllowedFolders;
 
 /// Meshes of the file.
 pub struct Meshes<'i> {
-    pub files: &'i Within,
+    pub files: &'i AllowedFolders,
     /// That of the file, and of its meshes in it.
     pub folder: PathBuf,
     pub meshdir: PathBuf,
@@ -18,7 +18,7 @@ pub struct Meshes<'i> {
     pub strips: bool,
     pub by_name: BTreeMap<String, &'i Item>,
     /// Those read; none where it cannot be.
-    pub known: HashMap<String, Option<Measured>>,
+    pub known: HashMap<String, Option<SolidMeasures>>,
     /// Names of meshes that enclose nothing for certain, or less than their tetrahedra, with the place of the first and
     /// why.
     pub open: Vec<(Span, String)>,
@@ -27,7 +27,7 @@ pub struct Meshes<'i> {
 
 impl<'i> Meshes<'i> {
     /// Of a document in a folder, none of them read.
-    pub fn new(root: &'i Item, files: &'i Within, folder: &Path) -> Self {
+    pub fn new(root: &'i Item, files: &'i AllowedFolders, folder: &Path) -> Self {
         let items = root.of("asset").flat_map(|asset| asset.of("mesh"));
         let by_name = items.filter_map(|item| Some((name_of(item)?, item))).collect();
         Self {

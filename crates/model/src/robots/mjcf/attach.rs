@@ -7,7 +7,7 @@ use super::assets::name_of;
 use super::couplings;
 use super::document::Item;
 use super::meshes;
-use super::read::{Around, Contents, Reader, Whole};
+use super::read::{Around, Contents, MjcfReader, Whole};
 use super::values::Values;
 use crate::robots::algebra;
 use crate::robots::tuning::TUNING;
@@ -15,7 +15,7 @@ use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::suggest::{self, clip};
 
-impl<'i> Reader<'_, 'i, '_> {
+impl<'i> MjcfReader<'_, 'i, '_> {
     /// Copies, each moved against the one before, with their number behind every name.
     pub fn replicate(&mut self, item: &'i Item, body: usize, around: &Around, contents: &mut Contents<'i>) {
         let Some(found) = item.get("count") else {
@@ -86,7 +86,7 @@ impl<'i> Reader<'_, 'i, '_> {
         let Whole { robot, names, touching, copies } = &mut self.whole;
         let whole = Whole { robot, names, touching, copies };
         let suffix = self.suffix.clone();
-        let mut reader = Reader { values: &mut values, root, whole, prefix: prefix.clone(), suffix };
+        let mut reader = MjcfReader { values: &mut values, root, whole, prefix: prefix.clone(), suffix };
         let around = |class| Around { pose: around.pose.clone(), class };
         match item.get("body") {
             None => root.of("worldbody").for_each(|world| reader.inside(world, body, &around(None), contents)),

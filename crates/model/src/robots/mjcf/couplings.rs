@@ -18,7 +18,7 @@ pub fn read(root: &Item, values: &mut Values, robot: &mut Robot, names: &Names, 
     let taken = robot.equalities.iter().map(|own| &own.name).chain(robot.tendons.iter().map(|own| &own.name));
     let taken = taken.chain(robot.actuators.iter().map(|own| &own.name)).cloned().collect();
     let prefix = attached.unwrap_or("");
-    let mut reader = Reader { values, robot, names, prefix, tendons: HashMap::new(), taken };
+    let mut reader = CouplingReader { values, robot, names, prefix, tendons: HashMap::new(), taken };
     let flags = reader.values.settings.flags;
     let acts = |tag: &str| match tag {
         "equality" => flags.equalities,
@@ -43,7 +43,7 @@ pub fn read(root: &Item, values: &mut Values, robot: &mut Robot, names: &Names, 
     }
 }
 
-pub struct Reader<'r, 'i, 'd> {
+pub struct CouplingReader<'r, 'i, 'd> {
     pub values: &'r mut Values<'i, 'd>,
     pub robot: &'r mut Robot,
     names: &'r Names,
@@ -53,7 +53,7 @@ pub struct Reader<'r, 'i, 'd> {
     taken: HashSet<String>,
 }
 
-impl Reader<'_, '_, '_> {
+impl CouplingReader<'_, '_, '_> {
     pub fn name(&mut self, item: &Item, otherwise: String) -> String {
         let written = item.get("name").map_or(otherwise, |name| format!("{}{}", self.prefix, name.value));
         names::in_formulas(&written, &mut self.taken)

@@ -6,12 +6,12 @@ use std::path::{Path, PathBuf};
 use super::format::{Fate, Rule};
 use super::table;
 use crate::robots::tuning::TUNING;
-use crate::robots::xml::{self, Element, NAMESPACE, Places};
+use crate::robots::xml::{self, Element, NAMESPACE, XmlSpans};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::{Diagnostic, Diagnostics};
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};
-use crate::syntax::within::Within;
+use crate::syntax::within::AllowedFolders;
 
 /// An element.
 pub struct Item {
@@ -49,7 +49,7 @@ impl Item {
 }
 
 /// Reads a file, whose path is seen from the model's folder, with its includes.
-pub fn read(path: &Path, at: Option<Span>, files: &Within, diagnostics: &mut Diagnostics) -> Option<Item> {
+pub fn read(path: &Path, at: Option<Span>, files: &AllowedFolders, diagnostics: &mut Diagnostics) -> Option<Item> {
     let folder = path.parent().unwrap_or(Path::new("")).to_owned();
     let mut reader = Reader { diagnostics, within: files, folder, open: Vec::new(), files: 0, items: 0, levels: 0 };
     let mut whole = Vec::new();
@@ -59,7 +59,7 @@ pub fn read(path: &Path, at: Option<Span>, files: &Within, diagnostics: &mut Dia
 
 struct Reader<'d> {
     diagnostics: &'d mut Diagnostics,
-    within: &'d Within,
+    within: &'d AllowedFolders,
     /// Of the outermost file: names are from it.
     folder: PathBuf,
     /// Files that include the next.
@@ -110,7 +110,7 @@ impl Reader<'_> {
         self.open.pop();
     }
 
-    fn items_of(&mut self, element: Element, places: Places, within: &str, found: &mut Vec<Item>) {
+    fn items_of(&mut self, element: Element, places: XmlSpans, within: &str, found: &mut Vec<Item>) {
         for child in element.children().filter(Element::is_element) {
             if child.tag_name().namespace() != element.tag_name().namespace() {
                 continue;
@@ -123,7 +123,7 @@ impl Reader<'_> {
         }
     }
 
-    fn include(&mut self, element: Element, places: Places, within: &str, found: &mut Vec<Item>) {
+    fn include(&mut self, element: Element, places: XmlSpans, within: &str, found: &mut Vec<Item>) {
         let Some(file) = xml::plain(element, "file") else {
             self.error(Code::MissingXml, places.tag(element), "`<include>` needs `file`", None);
             return;
@@ -164,7 +164,7 @@ impl Reader<'_> {
     }
 
     /// An element with everything in it, unless it is ignored or refused.
-    fn item(&mut self, element: Element, places: Places, within: &str) -> Option<Item> {
+    fn item(&mut self, element: Element, places: XmlSpans, within: &str) -> Option<Item> {
         let (tag, span) = (element.tag_name().name(), places.tag(element));
         let Some(rule) = table::rule(tag, within) else {
             let message = format!("`<{within}>` has no element `<{}>`", clip(tag));
@@ -202,7 +202,7 @@ impl Reader<'_> {
         Some(Item { tag: tag.to_owned(), span, attributes, items })
     }
 
-    fn attributes(&mut self, element: Element, places: Places, rule: &'static Rule) -> Vec<Attribute> {
+    fn attributes(&mut self, element: Element, places: XmlSpans, rule: &'static Rule) -> Vec<Attribute> {
         let mut found = Vec::new();
         for attribute in element.attributes() {
             let (name, value, span) = (attribute.name(), attribute.value(), places.value(attribute));

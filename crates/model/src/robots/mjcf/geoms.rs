@@ -5,12 +5,12 @@ use super::meshes;
 use super::values::{Values, along_z};
 use crate::robots::algebra::{self, Pose, Value};
 use crate::robots::masses::{self, MassPart};
-use crate::robots::meshes::Measured;
+use crate::robots::meshes::SolidMeasures;
 use crate::robots::tuning::TUNING;
 use crate::syntax::codes::Code;
 
 /// The mass of geoms with the inertia about their centre in the body's frame.
-pub struct Solid {
+pub struct GeomMass {
     pub mass: f64,
     pub center: [f64; 3],
     /// xx, yy, zz, xy, xz, yz.
@@ -71,7 +71,7 @@ pub fn part<'i>(values: &mut Values<'i, '_>, item: &'i Item, class: Option<usize
     }
     let (pose, volume, inertia) = match (shape, get(values, "mesh")) {
         (Shape::Mesh, Some(mesh)) => {
-            let Measured { size, center, inertia } = meshes::measured(values, mesh)?;
+            let SolidMeasures { size, center, inertia } = meshes::measured(values, mesh)?;
             let (position, rotation) = values.frame(item, class, &["geom"]);
             let pose = Pose { position: algebra::vector(position), rotation };
             let center = pose.then(&algebra::vector(center), &algebra::identity());
@@ -183,7 +183,7 @@ fn of_unit_mass(shape: Shape, [a, b, c]: [f64; 3]) -> (f64, [f64; 3]) {
 }
 
 /// All parts as one; nothing where there are none.
-pub fn solid(parts: &[MassPart]) -> Option<Solid> {
+pub fn solid(parts: &[MassPart]) -> Option<GeomMass> {
     if parts.is_empty() {
         return None;
     }
@@ -193,11 +193,11 @@ pub fn solid(parts: &[MassPart]) -> Option<Solid> {
     let [x, y, z] = masses::inertia(parts, &center);
     let ([mass], center) = (algebra::numbers(&[mass])?, algebra::numbers(&center)?);
     let [[xx, xy, xz], [_, yy, yz], [.., zz]] = [x, y, z];
-    Some(Solid { mass, center, inertia: algebra::numbers(&[xx, yy, zz, xy, xz, yz])? })
+    Some(GeomMass { mass, center, inertia: algebra::numbers(&[xx, yy, zz, xy, xz, yz])? })
 }
 
 /// A body's inertia with `boundmass`, `boundinertia` and `balanceinertia`.
-pub fn bounded(values: &Values, mut solid: Solid) -> Solid {
+pub fn bounded(values: &Values, mut solid: GeomMass) -> GeomMass {
     solid.mass = solid.mass.max(values.settings.least_mass);
     let [xx, yy, zz, xy, xz, yz] = solid.inertia;
     let tensor = nalgebra::Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);

@@ -5,7 +5,7 @@ use std::path::Path;
 use super::document::{Attribute, Item};
 use super::values::Values;
 use crate::robots::algebra;
-use crate::robots::meshes::{self, FORMATS, Faults, Measured, Triangle, Way};
+use crate::robots::meshes::{self, FORMATS, Faults, SolidMeasures, Triangle, Way};
 use crate::robots::tuning::TUNING;
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
@@ -14,7 +14,7 @@ use crate::syntax::text_file::regular;
 use crate::syntax::tuning::TUNING as SYNTAX;
 
 /// What the mesh of a name makes up; reports why nothing does.
-pub fn measured(values: &mut Values, named: &Attribute) -> Option<Measured> {
+pub fn measured(values: &mut Values, named: &Attribute) -> Option<SolidMeasures> {
     if let Some(known) = values.meshes.known.get(&named.value) {
         return *known;
     }
@@ -35,7 +35,7 @@ pub fn measured(values: &mut Values, named: &Attribute) -> Option<Measured> {
     found
 }
 
-fn read<'i>(values: &mut Values<'i, '_>, item: &'i Item, name: &str) -> Option<Measured> {
+fn read<'i>(values: &mut Values<'i, '_>, item: &'i Item, name: &str) -> Option<SolidMeasures> {
     let class = values.class_of(item, None, "class");
     let get = |values: &Values<'i, '_>, name: &'static str| values.get(item, class, &["mesh"], name);
     let ways =

@@ -3,7 +3,7 @@
 use super::couplings;
 use super::document::{Attribute, Item};
 use super::flags::on;
-use super::geoms::{self, Solid};
+use super::geoms::{self, GeomMass};
 use super::meshes;
 use super::robot::{Body, Joint, Mass, MjcfType, Names, Robot, Site};
 use super::springs;
@@ -43,7 +43,7 @@ pub fn robot<'i>(root: &'i Item, values: &mut Values<'i, '_>) -> Option<Robot> {
     };
     let (mut names, mut touching) = (Names::default(), Vec::new());
     let whole = Whole { robot: &mut robot, names: &mut names, touching: &mut touching, copies: &mut 0 };
-    let mut reader = Reader { values, root, whole, prefix: String::new(), suffix: String::new() };
+    let mut reader = MjcfReader { values, root, whole, prefix: String::new(), suffix: String::new() };
     for item in root.of("worldbody") {
         reader.inside(item, 0, &Around { pose: Pose::identity(), class: None }, &mut Contents::default());
     }
@@ -101,7 +101,7 @@ pub struct Whole<'r> {
     pub copies: &'r mut usize,
 }
 
-pub struct Reader<'r, 'i, 'd> {
+pub struct MjcfReader<'r, 'i, 'd> {
     pub values: &'r mut Values<'i, 'd>,
     /// The document that is read.
     pub root: &'i Item,
@@ -111,7 +111,7 @@ pub struct Reader<'r, 'i, 'd> {
     pub suffix: String,
 }
 
-impl<'i> Reader<'_, 'i, '_> {
+impl<'i> MjcfReader<'_, 'i, '_> {
     fn refuse_second(&mut self, at: &Span, what: &str, name: &str) {
         self.values.error(Code::NameTaken, at.clone(), format!("a second {what} is called `{}`", clip(name)), None);
     }
@@ -350,7 +350,7 @@ impl<'i> Reader<'_, 'i, '_> {
     }
 
     /// What `<inertial>` says, with the rotation of its frame.
-    fn inertial(&mut self, item: &Item) -> Option<(Solid, Quaternion)> {
+    fn inertial(&mut self, item: &Item) -> Option<(GeomMass, Quaternion)> {
         let (center, mut rotation) = self.values.frame(item, None, &[]);
         let Some(mass) = item.get("mass") else {
             self.values.error(Code::MissingXml, item.span.clone(), "`<inertial>` needs `mass`", None);
@@ -381,7 +381,7 @@ impl<'i> Reader<'_, 'i, '_> {
                 return None;
             }
         };
-        Some((Solid { mass, center, inertia }, rotation))
+        Some((GeomMass { mass, center, inertia }, rotation))
     }
 }
 

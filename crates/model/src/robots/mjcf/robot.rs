@@ -142,7 +142,7 @@ pub struct Tendon {
 }
 
 /// Force of an actuator with a control u on its length ℓ = gear · (sum of positions).
-pub enum Law {
+pub enum ActuatorLaw {
     /// gain u + bias₀ + bias₁ ℓ + bias₂ ℓ̇
     Affine { gain: f64, bias: [f64; 3] },
     /// kp (u − ℓ) − kv ℓ̇
@@ -169,7 +169,7 @@ pub struct Actuator {
     /// What the sum is in the file's configuration.
     pub offset: f64,
     pub gear: Number,
-    pub law: Law,
+    pub law: ActuatorLaw,
     /// Damping ratio from which the damping of the law follows.
     pub damping_ratio: Option<f64>,
     pub memory: Option<Memory>,
@@ -207,9 +207,9 @@ impl Robot {
         let tendons = self.tendons.iter().flat_map(|tendon| [&tendon.stiffness, &tendon.damping, &tendon.friction]);
         let actuators = self.actuators.iter().flat_map(|actuator| {
             let gains: Vec<&Number> = match &actuator.law {
-                Law::Affine { .. } => Vec::new(),
-                Law::Position { kp, kv } => vec![kp, kv],
-                Law::Velocity { kv } | Law::Damper { kv } => vec![kv],
+                ActuatorLaw::Affine { .. } => Vec::new(),
+                ActuatorLaw::Position { kp, kv } => vec![kp, kv],
+                ActuatorLaw::Velocity { kv } | ActuatorLaw::Damper { kv } => vec![kv],
             };
             std::iter::once(&actuator.gear).chain(gains)
         });

@@ -16,7 +16,7 @@
 use nalgebra::{DMatrix, DVector, Vector3};
 
 use super::flags::{Flags, on};
-use super::robot::{Joint, Law, MjcfType, Robot};
+use super::robot::{ActuatorLaw, Joint, MjcfType, Robot};
 use crate::robots::algebra::{self, Pose, Value, Vector};
 
 /// A velocity of one joint, in the world.
@@ -64,9 +64,9 @@ pub fn damp_actuators(robot: &mut Robot) {
         }
         let mass = 1.0 / gradient.dot(&(&inverse * &gradient));
         match &mut actuator.law {
-            Law::Position { kp, kv } => kv.value = 2.0 * ratio * (kp.value * mass).sqrt(),
-            Law::Affine { gain, bias } => bias[2] = -2.0 * ratio * (*gain * mass).sqrt(),
-            Law::Velocity { .. } | Law::Damper { .. } => {}
+            ActuatorLaw::Position { kp, kv } => kv.value = 2.0 * ratio * (kp.value * mass).sqrt(),
+            ActuatorLaw::Affine { gain, bias } => bias[2] = -2.0 * ratio * (*gain * mass).sqrt(),
+            ActuatorLaw::Velocity { .. } | ActuatorLaw::Damper { .. } => {}
         }
     }
 }

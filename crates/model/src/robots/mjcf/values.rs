@@ -14,7 +14,7 @@ use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::{Diagnostic, Diagnostics};
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};
-use crate::syntax::within::Within;
+use crate::syntax::within::AllowedFolders;
 
 /// The class that has no name, or is the outermost.
 const MAIN: &str = "main";
@@ -53,7 +53,7 @@ pub struct Settings {
 
 impl<'i, 'd> Values<'i, 'd> {
     /// For a file in a folder.
-    pub fn new(root: &'i Item, files: &'i Within, folder: &Path, diagnostics: &'d mut Diagnostics) -> Self {
+    pub fn new(root: &'i Item, files: &'i AllowedFolders, folder: &Path, diagnostics: &'d mut Diagnostics) -> Self {
         let settings = Settings {
             angle: std::f64::consts::PI / 180.0,
             euler: [0, 1, 2].map(|axis| (axis, true)),

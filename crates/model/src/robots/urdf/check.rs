@@ -6,9 +6,9 @@
 
 use std::fmt::Write;
 
-use super::format::{Absent, Attribute, ROBOT, Rule, Shape};
+use super::format::{Absent, Attribute, AttributeContent, ROBOT, Rule};
 use crate::robots::algebra;
-use crate::robots::xml::{EXPAND, Element, NAMESPACE, Places, children, plain};
+use crate::robots::xml::{EXPAND, Element, NAMESPACE, XmlSpans, children, plain};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::{Diagnostic, Diagnostics};
 use crate::syntax::source::Span;
@@ -26,7 +26,7 @@ const OPEN_LIMITS: Version = (1, 2);
 const LATEST: Version = (1, 2);
 
 /// Checks a robot, and writes it again for urdf-rs.
-pub fn rewrite(robot: Element, places: Places, diagnostics: &mut Diagnostics) -> String {
+pub fn rewrite(robot: Element, places: XmlSpans, diagnostics: &mut Diagnostics) -> String {
     let mut check = Check { places, diagnostics, version: (1, 0), text: String::new() };
     check.version = check.version_of(robot);
     check.element(robot, &ROBOT);
@@ -34,7 +34,7 @@ pub fn rewrite(robot: Element, places: Places, diagnostics: &mut Diagnostics) ->
 }
 
 struct Check<'d> {
-    places: Places,
+    places: XmlSpans,
     diagnostics: &'d mut Diagnostics,
     version: Version,
     text: String,
@@ -166,8 +166,8 @@ impl Check<'_> {
         };
         let (value, span) = (attribute.value(), self.places.value(attribute));
         let is_right = match rule.shape {
-            Shape::Text => true,
-            Shape::Word(words) => {
+            AttributeContent::Text => true,
+            AttributeContent::Word(words) => {
                 let known = words.contains(&value);
                 if !known {
                     let message = format!("`{}` is not a type of joint", clip(value));
@@ -175,7 +175,7 @@ impl Check<'_> {
                 }
                 known
             }
-            Shape::Numbers(count) => self.check_numbers(value, span, rule.name, count),
+            AttributeContent::Numbers(count) => self.check_numbers(value, span, rule.name, count),
         };
         Some(if is_right { value.to_owned() } else { instead() })
     }

@@ -24,7 +24,7 @@ pub struct Rule {
 /// An attribute without prefix.
 pub struct Attribute {
     pub name: &'static str,
-    pub shape: Shape,
+    pub shape: AttributeContent,
     /// The value in place of one that is wrong; NaN where no other value would do, as it satisfies no further check.
     pub instead: &'static str,
     pub absent: Absent,
@@ -32,7 +32,7 @@ pub struct Attribute {
 
 /// What an attribute contains.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub enum Shape {
+pub enum AttributeContent {
     Text,
     /// One of these.
     Word(&'static [&'static str]),
@@ -53,7 +53,7 @@ pub enum Absent {
 
 const fn text(name: &'static str, instead: &'static str) -> Attribute {
     // A missing text is reported with the name of its link or joint.
-    Attribute { name, shape: Shape::Text, instead, absent: Absent::Instead }
+    Attribute { name, shape: AttributeContent::Text, instead, absent: Absent::Instead }
 }
 
 const fn number(name: &'static str, instead: &'static str, absent: Absent) -> Attribute {
@@ -61,7 +61,7 @@ const fn number(name: &'static str, instead: &'static str, absent: Absent) -> At
 }
 
 const fn numbers(name: &'static str, count: usize, instead: &'static str, absent: Absent) -> Attribute {
-    Attribute { name, shape: Shape::Numbers(count), instead, absent }
+    Attribute { name, shape: AttributeContent::Numbers(count), instead, absent }
 }
 
 const EMPTY: Rule =
@@ -120,8 +120,12 @@ const INERTIA: Rule = Rule {
     ..EMPTY
 };
 
-const TYPE: Attribute =
-    Attribute { name: "type", shape: Shape::Word(&UrdfJointType::WORDS), instead: "fixed", absent: Absent::Instead };
+const TYPE: Attribute = Attribute {
+    name: "type",
+    shape: AttributeContent::Word(&UrdfJointType::WORDS),
+    instead: "fixed",
+    absent: Absent::Instead,
+};
 
 const JOINT: Rule = Rule {
     tag: "joint",

@@ -13,7 +13,7 @@ use super::visual::Visuals;
 use super::{check, tree};
 use crate::robots::names;
 use crate::robots::number::Number;
-use crate::robots::xml::{EXPAND, Element, NAMESPACE, Places, child, children, parse, plain};
+use crate::robots::xml::{EXPAND, Element, NAMESPACE, XmlSpans, child, children, parse, plain};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::{Diagnostic, Diagnostics};
 use crate::syntax::source::Span;
@@ -46,14 +46,14 @@ pub fn read(text: &str, start: usize, diagnostics: &mut Diagnostics) -> Option<R
 }
 
 struct Reader<'d> {
-    places: Places,
+    places: XmlSpans,
     diagnostics: &'d mut Diagnostics,
 }
 
 /// An element, if it is there, with the beginning of its numbers' names.
 #[derive(Clone, Copy)]
 struct Numbers<'a, 'i, 'p> {
-    places: Places,
+    places: XmlSpans,
     element: Option<Element<'a, 'i>>,
     prefix: &'p str,
 }

@@ -35,14 +35,14 @@ pub struct Visual {
     /// How it is turned there: rad about the fixed x, y, z.
     pub rpy: [f64; 3],
     /// Its shape, in the middle of its frame.
-    pub shape: Shape,
+    pub shape: VisualShape,
     /// Red, green and blue from 0 to 1.
     pub color: Option<[f64; 3]>,
 }
 
 /// A shape; lengths in m.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Shape {
+pub enum VisualShape {
     /// Its sides along x, y and z.
     Box([f64; 3]),
     /// About z.

@@ -1,6 +1,6 @@
 //! `<visual>`: what a link looks like. It is for pictures only: what cannot be read is left out.
 
-use super::robot::{Shape, Visual};
+use super::robot::{Visual, VisualShape};
 use crate::robots::xml::{Element, child, children, plain};
 
 /// What links of a robot look like.
@@ -38,16 +38,16 @@ impl<'a, 'i> Visuals<'a, 'i> {
     }
 }
 
-fn shape(geometry: Element) -> Option<Shape> {
+fn shape(geometry: Element) -> Option<VisualShape> {
     let found = geometry.children().find(Element::is_element)?;
     let one = |name| numbers(found, name).map(|[number]| number);
     match found.tag_name().name() {
-        "box" => numbers(found, "size").map(Shape::Box),
-        "cylinder" => Some(Shape::Cylinder { radius: one("radius")?, length: one("length")? }),
-        "sphere" => one("radius").map(Shape::Sphere),
+        "box" => numbers(found, "size").map(VisualShape::Box),
+        "cylinder" => Some(VisualShape::Cylinder { radius: one("radius")?, length: one("length")? }),
+        "sphere" => one("radius").map(VisualShape::Sphere),
         "mesh" => {
             let file = plain(found, "filename")?.value().to_owned();
-            Some(Shape::Mesh { file, scale: numbers(found, "scale").unwrap_or([1.0; 3]) })
+            Some(VisualShape::Mesh { file, scale: numbers(found, "scale").unwrap_or([1.0; 3]) })
         }
         _ => None,
     }
@@ -77,9 +77,9 @@ mod tests {
         assert_eq!(found.len(), 3);
         assert_eq!(found[0].xyz, [0.0, 0.0, 1.0]);
         assert_eq!(found[0].color, Some([1.0, 0.0, 0.0]));
-        assert_eq!(found[1].shape, Shape::Cylinder { radius: 0.5, length: 2.0 });
+        assert_eq!(found[1].shape, VisualShape::Cylinder { radius: 0.5, length: 2.0 });
         assert!(
-            matches!(&found[2].shape, Shape::Mesh { file, scale: [1.0, 1.0, 1.0] } if file == "package://arm/a.stl")
+            matches!(&found[2].shape, VisualShape::Mesh { file, scale: [1.0, 1.0, 1.0] } if file == "package://arm/a.stl")
         );
     }
 }

@@ -20,7 +20,7 @@ const TIME: &str = "t";
 
 /// A program, and the model that asks it.
 #[derive(Debug)]
-pub(in crate::study) struct Source {
+pub(in crate::study) struct ProgramSource {
     parameters: Vec<Parameter>,
     pub(super) own: BlackBox,
     pool: Pool,
@@ -61,7 +61,7 @@ struct Known {
     values: usize,
 }
 
-impl Source {
+impl ProgramSource {
     /// Of a model; `None` where a mechanism moves.
     pub fn of(description: &Description) -> Option<Self> {
         let own = description.black_box.clone()?;

@@ -8,7 +8,7 @@ use crate::results::Deviation;
 use crate::results::OutputBounds;
 
 /// Bands (one an output, or none) and nominal courses, with the outputs' scales.
-pub(super) struct Known {
+pub(super) struct KnownBands {
     outputs: Vec<OutputBounds>,
     /// NaN for outputs that have none.
     scales: Vec<f64>,
@@ -38,7 +38,7 @@ fn scale(output: &OutputBounds) -> f64 {
     if scale > TUNING.at_rest * low.abs().max(high.abs()) { scale } else { f64::NAN }
 }
 
-impl Known {
+impl KnownBands {
     pub(super) fn new(outputs: Vec<OutputBounds>) -> Self {
         let scales = outputs.iter().map(scale).collect();
         Self { outputs, scales }
@@ -117,7 +117,7 @@ mod tests {
 
     #[test]
     fn outside_and_inside_are_told_apart() {
-        let known = Known::new(vec![output(&[0.5, 0.0, f64::NAN], &[0.5, 2.0, 3.0])]);
+        let known = KnownBands::new(vec![output(&[0.5, 0.0, f64::NAN], &[0.5, 2.0, 3.0])]);
         assert_eq!(known.scales, [2.0]);
         let of = |lower: &[f64], upper: &[f64]| known.of_bounds(&[output(lower, upper)]);
         let is = |over_width, under_coverage| Deviation::Bounds { over_width, under_coverage };
@@ -132,7 +132,7 @@ mod tests {
     fn an_output_at_rest_is_not_looked_at() {
         let still = OutputBounds { bands: vec![], ..output(&[], &[]) };
         let moving = OutputBounds { name: "y".into(), nominal: vec![0.0, 1.0, 4.0], ..still.clone() };
-        let known = Known::new(vec![still, moving]);
+        let known = KnownBands::new(vec![still, moving]);
         assert_eq!(known.at_rest().collect::<Vec<_>>(), ["x"]);
         let of = |course: &[f64]| known.of_courses([&[9.0; 3], course].into_iter());
         assert_eq!(of(&[0.0, 1.0, 3.0]), Deviation::Trajectory(0.25));
@@ -141,7 +141,7 @@ mod tests {
 
     #[test]
     fn bands_are_widened_where_they_are_known() {
-        let mut known = Known::new(vec![output(&[0.0, 0.0, f64::NAN], &[1.0, 2.0, f64::NAN])]);
+        let mut known = KnownBands::new(vec![output(&[0.0, 0.0, f64::NAN], &[1.0, 2.0, f64::NAN])]);
         known.widen(&[output(&[-1.0, 0.5, 0.0], &[0.5, 3.0, 0.0])]);
         let is = |lower: &[f64], upper: &[f64]| known.of_bounds(&[output(lower, upper)]);
         let exact = Deviation::Bounds { over_width: 0.0, under_coverage: 0.0 };

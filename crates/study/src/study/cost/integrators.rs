@@ -1,6 +1,6 @@
 //! Schemes and other integrators side by side: the nominal trajectory, on one core, by each with each step.
 
-use super::deviation::Known;
+use super::deviation::KnownBands;
 use super::grid::{LEVELS, Setting, steppings, steppings_by};
 use super::timing::{best_of, method, timed};
 use super::tuning::TUNING;
@@ -24,7 +24,7 @@ const INTEGRATORS: [Integrator; 4] =
 pub(super) fn trajectories(
     model: &Description,
     system: &System,
-    known: &Known,
+    known: &KnownBands,
     progress: &dyn Fn(f64),
     options: &CostOptions,
 ) -> Result<Vec<CostPoint>, CostError> {

@@ -11,7 +11,7 @@
 
 use std::cell::Cell;
 
-use super::deviation::Known;
+use super::deviation::KnownBands;
 use super::grid::{SCAN, Setting, finer};
 use super::plan::ReferencePlan;
 use super::timing::bounds;
@@ -22,7 +22,7 @@ use crate::results::{CostMethod, CostReference};
 
 /// Bounds and nominal courses that others are held against, and the estimates of their errors.
 pub(super) struct Reference {
-    pub(super) known: Known,
+    pub(super) known: KnownBands,
     pub(super) summary: CostReference,
 }
 
@@ -55,7 +55,7 @@ impl Reference {
 
         let fine = run(plan.method, plan.order, h, 0.4)?;
         let (middle, coarse) = (run(plan.method, plan.order, h2, 0.2)?, run(plan.method, plan.order, h4, 0.1)?);
-        let mut known = Known::new(limit(&fine, &middle));
+        let mut known = KnownBands::new(limit(&fine, &middle));
         let before = limit(&middle, &coarse);
         let of_steps = known.of_bounds(&before).largest() / 3.0;
         let of_courses = known.of_courses(before.iter().map(|output| &output.nominal[..])).largest() / 3.0;

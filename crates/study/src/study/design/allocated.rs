@@ -3,9 +3,9 @@
 use symdiff::{Binary, Formula};
 
 use super::axes::Axes;
-use super::points::{Studied, studied};
+use super::points::{StudiedPoint, studied};
 use super::search;
-use super::surface::{Surface, scale};
+use super::surface::{DesignSurface, scale};
 use super::tuning::TUNING;
 use super::{DesignError, Question};
 use crate::model::Description;
@@ -45,7 +45,7 @@ pub fn at_cost(
     point: &[f64],
     kind: DesignKind,
     options: &Options,
-) -> Result<Option<Studied>, DesignError> {
+) -> Result<Option<StudiedPoint>, DesignError> {
     let allocation = allocated(question, axes, point, options)?;
     let met = allocation.as_ref().filter(|own| own.not_met.is_empty());
     let point = met.map_or_else(|| point.to_vec(), |own| axes.with_tolerances(point, &own.tolerances));
@@ -65,9 +65,9 @@ pub fn confirmed(
     question: &Question,
     axes: &Axes,
     point: Vec<f64>,
-    surface: &Surface,
+    surface: &DesignSurface,
     options: &Options,
-) -> Result<Option<Studied>, DesignError> {
+) -> Result<Option<StudiedPoint>, DesignError> {
     let mut assessed = question.assessed(surface)?;
     // What a rounded point misses is made up for by tighter tolerances.
     let rounded = axes.rounded(&point).into_iter().map(|own| assessed.restored(own)).collect();

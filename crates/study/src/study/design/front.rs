@@ -2,7 +2,7 @@
 
 use super::axes::Axes;
 use super::goal::Goal;
-use super::points::Studied;
+use super::points::StudiedPoint;
 use super::refine::refined;
 use super::search::local;
 use super::tuning::TUNING;
@@ -28,7 +28,7 @@ pub fn front(
 fn beyond(
     question: &Question,
     axes: &Axes,
-    first: Option<&Studied>,
+    first: Option<&StudiedPoint>,
     all: &mut Found,
     largest: f64,
     options: &Options,
@@ -53,7 +53,7 @@ fn beyond(
 }
 
 /// A point of the front.
-fn trade(studied: &Studied) -> Option<DesignTrade> {
+fn trade(studied: &StudiedPoint) -> Option<DesignTrade> {
     let allocation = studied.allocation.as_ref()?;
     let found = &studied.found;
     let [margin, error] = studied.margin;

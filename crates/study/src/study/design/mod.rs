@@ -34,15 +34,15 @@ use axes::{Axes, without_tolerances};
 use front::{front, front_beside};
 use goal::Goal;
 use instants::{at_instants, required};
-use points::{Studied, not_met, studied};
+use points::{StudiedPoint, not_met, studied};
 use price::Priced;
 use profiles::profiles;
 use refine::refined;
 use search::{are_alike, optima};
 use share::Yield;
-use surface::Surface;
+use surface::DesignSurface;
 use tuning::TUNING;
-use worst::{Assessed, Worst};
+use worst::{Assessed, WorstOfDesign};
 
 /// Why there is no design.
 #[derive(Debug, thiserror::Error)]
@@ -93,9 +93,9 @@ impl Question {
     }
 
     /// What counts of a candidate, on a surrogate.
-    fn assessed<'s>(&self, surface: &'s Surface) -> Result<Box<dyn Assessed + 's>, DesignError> {
+    fn assessed<'s>(&self, surface: &'s DesignSurface) -> Result<Box<dyn Assessed + 's>, DesignError> {
         let requirements: Box<dyn Assessed + 's> = match self.share.filter(|_| surface.axes.uncertain() > 0) {
-            None => Box::new(Worst::new(surface)),
+            None => Box::new(WorstOfDesign::new(surface)),
             Some(share) => {
                 let from = surface.axes.start();
                 let laws = statistics::laws(&surface.axes.at(&self.model, &from)).map_err(DesignError::Unsuitable)?;
@@ -249,9 +249,9 @@ fn designed(
 /// Optima with their studies, the best first.
 struct Found {
     /// At least one.
-    optima: Vec<Studied>,
+    optima: Vec<StudiedPoint>,
     /// That of the whole ranges, or of the part about the first known point that has one.
-    surface: Surface,
+    surface: DesignSurface,
     /// By free parameter, the part of its range that was searched.
     searched: Vec<[f64; 2]>,
     simulations: usize,
@@ -266,7 +266,7 @@ impl Found {
     }
 
     /// Counts a surrogate.
-    fn add(&mut self, surface: &Surface) {
+    fn add(&mut self, surface: &DesignSurface) {
         self.simulations += surface.simulations;
         for (searched, own) in self.searched.iter_mut().zip(&surface.region) {
             *searched = [searched[0].min(own[0]), searched[1].max(own[1])];
@@ -282,7 +282,7 @@ fn found(
     most: usize,
     options: &Options,
 ) -> Result<Found, DesignError> {
-    let surface = Surface::new(question, axes, &axes.ranges(), &known[0], options)?;
+    let surface = DesignSurface::new(question, axes, &axes.ranges(), &known[0], options)?;
     let rough = optima(question, &surface, known, options)?;
     let (searched, simulations) = (surface.region.clone(), surface.simulations);
     let mut all = Found { optima: Vec::new(), surface, searched, simulations, confirming: 0 };

@@ -2,7 +2,7 @@
 
 use super::axes::{Axes, without_tolerances};
 use super::goal::{Goal, Merit};
-use super::surface::{self, Surface, about, scale};
+use super::surface::{self, DesignSurface, about, scale};
 use super::tuning::TUNING;
 use super::{DesignError, Question};
 use crate::model::{Description, Requirement};
@@ -14,7 +14,7 @@ use crate::study::{Kept, Options, RunError, reduced, statistics, subsystems};
 
 /// A point with the study of its worst cases.
 #[derive(Clone, Debug)]
-pub struct Studied {
+pub struct StudiedPoint {
     pub point: Vec<f64>,
     pub merit: Merit,
     /// Margins of all requirements less their errors, the objective's last.
@@ -37,7 +37,7 @@ pub fn studied(
     point: &[f64],
     kind: DesignKind,
     options: &Options,
-) -> Result<Option<Studied>, DesignError> {
+) -> Result<Option<StudiedPoint>, DesignError> {
     let options = Options { methods: None, store: None, ..*options };
     let at = axes.at(&question.model, point);
     // Only the verdicts of optima are worth more simulations.
@@ -64,7 +64,7 @@ pub fn studied(
     let least = known.iter().map(|[margin, _]| *margin).fold(f64::INFINITY, f64::min);
     let leaves_enough =
         known.iter().all(|[margin, error]| margin - error >= question.goal.margin() - TUNING.missed_margin);
-    let mut studied = Studied {
+    let mut studied = StudiedPoint {
         point: point.to_vec(),
         merit: merit(&all),
         margins: all.iter().map(|[margin, error]| margin - error).collect(),
@@ -175,12 +175,12 @@ fn by_share(
     question: &Question,
     axes: &Axes,
     share: f64,
-    studied: &mut Studied,
+    studied: &mut StudiedPoint,
     options: &Options,
 ) -> Result<bool, DesignError> {
     let point = studied.point.clone();
     let surface =
-        Surface::new(question, axes, &about(&point, &axes.ranges(), TUNING.region_of_quantile), &point, options)?;
+        DesignSurface::new(question, axes, &about(&point, &axes.ranges(), TUNING.region_of_quantile), &point, options)?;
     let slacks = question.assessed(&surface)?.slacks(&point);
     studied.of_surrogate = surface.simulations;
     studied.margins = slacks.iter().zip(&surface.scales).map(|(slack, scale)| slack * scale).collect();

@@ -1,13 +1,17 @@
 //! The objective along each free parameter, through a point.
 
 use super::goal::Goal;
-use super::surface::Surface;
+use super::surface::DesignSurface;
 use super::tuning::TUNING;
 use super::{DesignError, Question};
 use crate::results::DesignProfile;
 
 /// The profiles through a point on a surrogate; none of one that does not have the point.
-pub fn profiles(question: &Question, surface: &Surface, point: &[f64]) -> Result<Vec<DesignProfile>, DesignError> {
+pub fn profiles(
+    question: &Question,
+    surface: &DesignSurface,
+    point: &[f64],
+) -> Result<Vec<DesignProfile>, DesignError> {
     let is_inside = point.iter().zip(&surface.region).all(|(value, [lower, upper])| (lower..=upper).contains(&value));
     // The cost does not depend on a nominal value alone.
     if !is_inside || matches!(question.goal, Goal::Cost(_)) {

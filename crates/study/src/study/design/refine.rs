@@ -3,9 +3,9 @@
 use super::allocated;
 use super::axes::Axes;
 use super::goal::Goal;
-use super::points::{Studied, studied};
+use super::points::{StudiedPoint, studied};
 use super::search::{self, Optimum, local};
-use super::surface::{Surface, about};
+use super::surface::{DesignSurface, about};
 use super::tuning::TUNING;
 use super::{DesignError, Found, Question};
 use crate::results::DesignKind;
@@ -19,13 +19,13 @@ pub fn refined(
     rough: &Optimum,
     all: &mut Found,
     options: &Options,
-) -> Result<Option<Studied>, DesignError> {
+) -> Result<Option<StudiedPoint>, DesignError> {
     let ranges = axes.ranges();
     let mut point = rough.point.clone();
     let mut last = None;
     for share in TUNING.regions {
         for _ in 0..TUNING.moves {
-            let surface = Surface::new(question, axes, &about(&point, &ranges, share), &point, options)?;
+            let surface = DesignSurface::new(question, axes, &about(&point, &ranges, share), &point, options)?;
             all.add(&surface);
             point = local(&surface, &mut *question.assessed(&surface)?, question.goal, &point, TUNING.sharp_end).point;
             let is_inside = !is_at_edge(&point, &surface.region, &ranges);
@@ -52,11 +52,11 @@ fn confirmed(
     question: &Question,
     axes: &Axes,
     mut point: Vec<f64>,
-    mut surface: Surface,
+    mut surface: DesignSurface,
     all: &mut Found,
     options: &Options,
-) -> Result<Option<Studied>, DesignError> {
-    let mut best: Option<Studied> = None;
+) -> Result<Option<StudiedPoint>, DesignError> {
+    let mut best: Option<StudiedPoint> = None;
     for _ in 0..TUNING.corrections {
         point = search::best_of(&mut *question.assessed(&surface)?, question.goal, axes.rounded(&point), point);
         let Some(found) = studied(question, axes, &point, DesignKind::Optimum, options)? else { break };
@@ -70,7 +70,7 @@ fn confirmed(
             surface.reserves[requirement] +=
                 surface.scales[requirement] * left[requirement] - known + TUNING.reserved * missed;
         }
-        let is_better = |best: &Studied| match is_feasible == best.found.is_feasible {
+        let is_better = |best: &StudiedPoint| match is_feasible == best.found.is_feasible {
             true => found.merit.is_better(&best.merit),
             false => is_feasible,
         };

@@ -5,7 +5,7 @@
 //! and cases found at its end belong to the next one.
 
 use super::goal::{Goal, Merit};
-use super::surface::Surface;
+use super::surface::DesignSurface;
 use super::tuning::TUNING;
 use super::worst::Assessed;
 use super::{DesignError, Question};
@@ -22,7 +22,7 @@ pub struct Optimum {
 /// Local optima of a region, the best first; searches begin at `known` points and at some spread over it.
 pub fn optima(
     question: &Question,
-    surface: &Surface,
+    surface: &DesignSurface,
     known: &[Vec<f64>],
     options: &Options,
 ) -> Result<Vec<Optimum>, DesignError> {
@@ -45,7 +45,7 @@ pub fn optima(
 }
 
 /// The points to begin at: those known, and the best of those spread over the region that are apart.
-fn starts(surface: &Surface, goal: Goal, known: &[Vec<f64>]) -> Vec<Vec<f64>> {
+fn starts(surface: &DesignSurface, goal: Goal, known: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let k = surface.region.len();
     let spread = Design::Sobol.points(
         k,
@@ -93,7 +93,13 @@ pub fn are_alike(region: &[[f64; 2]], a: &[f64], b: &[f64]) -> bool {
 }
 
 /// The optimum that a search from a start ends at, with steps down to the share `smallest` of the region.
-pub fn local(surface: &Surface, assessed: &mut dyn Assessed, goal: Goal, start: &[f64], smallest: f64) -> Optimum {
+pub fn local(
+    surface: &DesignSurface,
+    assessed: &mut dyn Assessed,
+    goal: Goal,
+    start: &[f64],
+    smallest: f64,
+) -> Optimum {
     let inside = |value: f64, [lower, upper]: &[f64; 2]| value.clamp(*lower, *upper);
     let point: Vec<f64> = start.iter().zip(&surface.region).map(|(value, ends)| inside(*value, ends)).collect();
     let mut best = Optimum { merit: goal.merit(&assessed.slacks(&point)), point };
@@ -160,7 +166,7 @@ pub fn best_of(assessed: &mut dyn Assessed, goal: Goal, points: Vec<Vec<f64>>, g
 
 /// What a violation has to count at least, so that no goal is worth it: by the changes of the goals and of the limit
 /// that is nearest over the region.
-fn price(surface: &Surface, goals: &[Linear], limits: &[Linear]) -> f64 {
+fn price(surface: &DesignSurface, goals: &[Linear], limits: &[Linear]) -> f64 {
     let change = |own: &Linear| {
         let along = own.slopes.iter().zip(&surface.region);
         along.map(|(slope, [lower, upper])| (slope * (upper - lower)).abs()).sum::<f64>()

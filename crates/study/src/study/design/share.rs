@@ -1,7 +1,7 @@
 //! What a share of the production leaves, as a function of the nominal values.
 
 use super::goal::Goal;
-use super::surface::Surface;
+use super::surface::DesignSurface;
 use super::tuning::TUNING;
 use super::worst::{Assessed, around, quotients};
 use crate::numerics::Linear;
@@ -11,7 +11,7 @@ use crate::study::statistics::Laws;
 
 /// Of a share of the samples of the parameters' laws, which go with the nominal values.
 pub struct Yield<'s> {
-    surface: &'s Surface,
+    surface: &'s DesignSurface,
     goal: Goal,
     /// Values of the uncertain parameters, about a point.
     values: Vec<Vec<f64>>,
@@ -22,7 +22,7 @@ pub struct Yield<'s> {
 
 impl<'s> Yield<'s> {
     /// Of these laws about a point.
-    pub fn new(surface: &'s Surface, goal: Goal, laws: &Laws, from: &[f64], share: f64) -> Self {
+    pub fn new(surface: &'s DesignSurface, goal: Goal, laws: &Laws, from: &[f64], share: f64) -> Self {
         let (points, weights) = Mixture::default().replicate(0, laws.dimension(), TUNING.samples_of_share);
         let values = points.iter().map(|scores| laws.of_scores(scores)).collect();
         Self { surface, goal, values, weights, from: from.to_vec(), may_fail: 1.0 - share }

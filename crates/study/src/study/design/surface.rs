@@ -13,7 +13,7 @@ use crate::study::allocate::tuning::TUNING as ALLOCATE;
 use crate::study::{Kept, Options, RunError, subsystems};
 
 /// A surrogate of all margins over a region of nominal values and the tolerances about them.
-pub struct Surface {
+pub struct DesignSurface {
     kept: Kept,
     pub axes: Axes,
     /// By free parameter.
@@ -27,7 +27,7 @@ pub struct Surface {
     pub simulations: usize,
 }
 
-impl Surface {
+impl DesignSurface {
     /// Over a region, or the largest part of it about a point that has a surrogate.
     ///
     /// # Errors
@@ -127,7 +127,7 @@ pub fn scale(requirement: &Requirement) -> f64 {
 }
 
 /// How far the objective may be off, in shares of limits, where they are known.
-pub fn error(surface: &Surface, goal: Goal) -> f64 {
+pub fn error(surface: &DesignSurface, goal: Goal) -> f64 {
     let Some(margins) = surface.kept.margins() else { return f64::NAN };
     let of = |own: usize| {
         let largest = surface.instants[own].clone().map(|instant| margins.error(instant)).fold(0.0, f64::max);

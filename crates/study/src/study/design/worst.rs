@@ -1,6 +1,6 @@
 //! What the worst case leaves, as a function of the nominal values.
 
-use super::surface::Surface;
+use super::surface::DesignSurface;
 use super::tuning::TUNING;
 use crate::numerics::{ExtremeSearch, Extremes, Linear, best_step};
 
@@ -31,8 +31,8 @@ pub trait Assessed {
 }
 
 /// Of every case within the tolerances.
-pub struct Worst<'s> {
-    surface: &'s Surface,
+pub struct WorstOfDesign<'s> {
+    surface: &'s DesignSurface,
     search: ExtremeSearch,
     before: Vec<Extremes>,
     /// ξ of the worst cases so far, by requirement, the latest last.
@@ -40,8 +40,8 @@ pub struct Worst<'s> {
     has_learnt: bool,
 }
 
-impl<'s> Worst<'s> {
-    pub fn new(surface: &'s Surface) -> Self {
+impl<'s> WorstOfDesign<'s> {
+    pub fn new(surface: &'s DesignSurface) -> Self {
         let known = vec![Vec::new(); surface.count()];
         Self {
             surface,
@@ -53,7 +53,7 @@ impl<'s> Worst<'s> {
     }
 }
 
-impl Assessed for Worst<'_> {
+impl Assessed for WorstOfDesign<'_> {
     fn slacks(&mut self, point: &[f64]) -> Vec<f64> {
         let surface = self.surface;
         if surface.axes.uncertain() == 0 {
@@ -109,7 +109,7 @@ impl Assessed for Worst<'_> {
 }
 
 /// The point itself, and a pair of neighbours along each axis.
-pub fn around(surface: &Surface, point: &[f64]) -> Vec<Vec<f64>> {
+pub fn around(surface: &DesignSurface, point: &[f64]) -> Vec<Vec<f64>> {
     let mut points = vec![point.to_vec()];
     for (axis, [lower, upper]) in surface.region.iter().enumerate() {
         for sign in [-1.0, 1.0] {

@@ -8,7 +8,7 @@ use crate::model::{Body, Description, Output};
 
 /// Outputs that are asked.
 #[derive(Default)]
-pub(in crate::study) struct Asked(pub Vec<Output>);
+pub(in crate::study) struct DrawingOutputs(pub Vec<Output>);
 
 /// Three of them.
 pub(in crate::study) type AskedVector = [usize; 3];
@@ -35,19 +35,19 @@ pub(in crate::study) struct AskedBody {
 
 /// A frame in another.
 #[derive(Clone, Copy)]
-pub(in crate::study) struct Frame {
+pub(in crate::study) struct RelativeFrame {
     pub position: Vector3<f64>,
     pub rotation: UnitQuaternion<f64>,
 }
 
-impl Frame {
+impl RelativeFrame {
     /// A point of the frame in the other.
     pub fn place(&self, point: Vector3<f64>) -> Vector3<f64> {
         self.position + self.rotation * point
     }
 }
 
-impl Asked {
+impl DrawingOutputs {
     pub fn formula(&mut self, formula: Formula) -> usize {
         self.0.push(Output { name: String::new(), formula, unit: String::new(), dimension: None, of_results: false });
         self.0.len() - 1
@@ -109,9 +109,9 @@ impl Asked {
 }
 
 /// Values of the requested quantities.
-pub(in crate::study) struct Values(pub Vec<f64>);
+pub(in crate::study) struct DrawingValues(pub Vec<f64>);
 
-impl Values {
+impl DrawingValues {
     pub fn vector(&self, asked: AskedVector) -> Vector3<f64> {
         Vector3::from(asked.map(|output| self.0[output]))
     }
@@ -139,9 +139,9 @@ impl Values {
     }
 
     /// A body's frame in the ground's.
-    pub fn frame(&self, body: &AskedBody) -> Frame {
+    pub fn frame(&self, body: &AskedBody) -> RelativeFrame {
         let position = body.position.map_or_else(Vector3::zeros, |position| self.vector(position));
-        Frame { position, rotation: self.rotation(body.rotation) }
+        RelativeFrame { position, rotation: self.rotation(body.rotation) }
     }
 }
 

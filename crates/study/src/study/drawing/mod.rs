@@ -21,7 +21,7 @@ use crate::model::{Body, Description};
 use crate::numerics::Sample;
 use crate::results::{Drawing, DrawnBody, DrawnElement, DrawnLength, DrawnPoint};
 use crate::simulate::Assembled;
-use asked::{Asked, AskedBody, AskedVector, Frame, Values};
+use asked::{AskedBody, AskedVector, DrawingOutputs, DrawingValues, RelativeFrame};
 use tuning::TUNING;
 
 /// Draws a model's nominal start.
@@ -60,7 +60,7 @@ pub(super) fn extent(numbers: impl Iterator<Item = f64>) -> [f64; 2] {
 /// Draws it with its ground from one place to another along x, m.
 pub(super) fn drawn(description: &Description, along: Option<[f64; 2]>) -> Result<Drawing, RunError> {
     needs_mechanism(description, "a drawing")?;
-    let mut asked = Asked::default();
+    let mut asked = DrawingOutputs::default();
     let bodies = description.bodies.iter().enumerate();
     let bodies: Vec<AskedBody> = bodies.map(|(index, body)| asked.body(description, index, body)).collect();
     let joints = description.joints.iter().map(|joint| joint.kind.direction());
@@ -74,7 +74,7 @@ pub(super) fn drawn(description: &Description, along: Option<[f64; 2]>) -> Resul
 
     let assembled = assembled(&Questions { outputs: asked.0.into(), ..Questions::of(description) })?;
     let nominal: Sample = assembled.system.parameters.iter().map(|parameter| parameter.nominal).collect();
-    let values = Values(assembled.outputs_at_start(0..first_length, &nominal));
+    let values = DrawingValues(assembled.outputs_at_start(0..first_length, &nominal));
     let frames = bodies.iter().map(|body| values.frame(body)).collect();
     let solids = solids::solids(description, &asked_solids, &bodies, &values);
     let mut scene = Scene { description, bodies, frames, values, origins: BTreeSet::new() };
@@ -93,7 +93,7 @@ pub(super) fn drawn(description: &Description, along: Option<[f64; 2]>) -> Resul
 }
 
 /// Asks the distances of each body's points, two and two.
-fn pairs_of_points(description: &Description, asked: &mut Asked) -> Vec<[PointRef; 2]> {
+fn pairs_of_points(description: &Description, asked: &mut DrawingOutputs) -> Vec<[PointRef; 2]> {
     let mut pairs = Vec::new();
     let few = |(_, body): &(usize, &Body)| body.points.len() <= TUNING.most_points;
     for (body, known) in description.bodies.iter().enumerate().filter(few) {
@@ -121,8 +121,8 @@ fn guide(body: &Body) -> Option<[f64; 3]> {
 struct Scene<'d> {
     description: &'d Description,
     bodies: Vec<AskedBody>,
-    frames: Vec<Frame>,
-    values: Values,
+    frames: Vec<RelativeFrame>,
+    values: DrawingValues,
     /// Bodies of which an element names the frame's origin.
     origins: BTreeSet<usize>,
 }
@@ -152,12 +152,12 @@ fn drawn_element(
 
 impl Scene<'_> {
     /// The frame at a point, in the ground's.
-    fn frame(&self, of: PointRef) -> Frame {
+    fn frame(&self, of: PointRef) -> RelativeFrame {
         let frame = self.frames[of.body];
         let Some(point) = of.point else { return frame };
         let (position, rotation) = self.bodies[of.body].points[point];
         let rotation = frame.rotation * self.values.rotation(rotation);
-        Frame { position: frame.place(self.values.vector(position)), rotation }
+        RelativeFrame { position: frame.place(self.values.vector(position)), rotation }
     }
 
     fn point(&mut self, of: PointRef) -> End {

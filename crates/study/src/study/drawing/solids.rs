@@ -2,7 +2,9 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 
-use super::asked::{Asked, AskedBody, AskedRotation, AskedVector, Frame, Values, roll_pitch_yaw};
+use super::asked::{
+    AskedBody, AskedRotation, AskedVector, DrawingOutputs, DrawingValues, RelativeFrame, roll_pitch_yaw,
+};
 use crate::elements::{Form, Shape, Surroundings};
 use crate::grammar::{Mesh, PointRef};
 use crate::model::{self, Description, Visual};
@@ -20,7 +22,11 @@ pub(super) struct AskedSolid {
 }
 
 /// Asks all of a model.
-pub(super) fn asked(description: &Description, surroundings: Surroundings, asked: &mut Asked) -> Vec<AskedSolid> {
+pub(super) fn asked(
+    description: &Description,
+    surroundings: Surroundings,
+    asked: &mut DrawingOutputs,
+) -> Vec<AskedSolid> {
     let mut ask = |at: PointRef, surface: Option<&String>, shape: &Shape| AskedSolid {
         at,
         surface: surface.cloned(),
@@ -45,10 +51,11 @@ pub(super) fn solids(
     description: &Description,
     asked: &[AskedSolid],
     bodies: &[AskedBody],
-    values: &Values,
+    values: &DrawingValues,
 ) -> Vec<DrawnSolid> {
     let own = asked.iter().map(|solid| {
-        let frame = Frame { position: values.vector(solid.position), rotation: values.rotation(solid.rotation) };
+        let frame =
+            RelativeFrame { position: values.vector(solid.position), rotation: values.rotation(solid.rotation) };
         let form = solid.form.map(|&output| values.0[output]);
         DrawnSolid { surface: solid.surface.clone(), ..placed(solid.at, frame, form, bodies, values) }
     });
@@ -72,12 +79,18 @@ fn is_same(one: &DrawnSolid, other: &DrawnSolid) -> bool {
 }
 
 /// A form in a frame that is in a point's.
-fn placed(at: PointRef, own: Frame, form: Form<f64>, bodies: &[AskedBody], values: &Values) -> DrawnSolid {
+fn placed(
+    at: PointRef,
+    own: RelativeFrame,
+    form: Form<f64>,
+    bodies: &[AskedBody],
+    values: &DrawingValues,
+) -> DrawnSolid {
     let outer = at.point.map_or_else(
-        || Frame { position: Vector3::zeros(), rotation: UnitQuaternion::identity() },
+        || RelativeFrame { position: Vector3::zeros(), rotation: UnitQuaternion::identity() },
         |point| {
             let (position, rotation) = bodies[at.body].points[point];
-            Frame { position: values.vector(position), rotation: values.rotation(rotation) }
+            RelativeFrame { position: values.vector(position), rotation: values.rotation(rotation) }
         },
     );
     let turned = (outer.rotation * own.rotation).into_inner();
@@ -91,16 +104,16 @@ fn placed(at: PointRef, own: Frame, form: Form<f64>, bodies: &[AskedBody], value
     }
 }
 
-fn of_link(place: PointRef, visual: &Visual, bodies: &[AskedBody], values: &Values) -> DrawnSolid {
+fn of_link(place: PointRef, visual: &Visual, bodies: &[AskedBody], values: &DrawingValues) -> DrawnSolid {
     let form = match &visual.shape {
-        model::Shape::Box(size) => Form::Box { size: *size, radius: 0.0 },
-        model::Shape::Cylinder { radius, length } => {
+        model::VisualShape::Box(size) => Form::Box { size: *size, radius: 0.0 },
+        model::VisualShape::Cylinder { radius, length } => {
             Form::Cylinder { axis: [0.0, 0.0, 1.0], length: *length, radius: *radius }
         }
-        model::Shape::Sphere(radius) => Form::Sphere { radius: *radius },
-        model::Shape::Mesh { file, scale } => Form::Mesh { mesh: Mesh::unread(file), scale: *scale },
+        model::VisualShape::Sphere(radius) => Form::Sphere { radius: *radius },
+        model::VisualShape::Mesh { file, scale } => Form::Mesh { mesh: Mesh::unread(file), scale: *scale },
     };
-    let frame = Frame { position: visual.xyz.into(), rotation: roll_pitch_yaw(visual.rpy) };
+    let frame = RelativeFrame { position: visual.xyz.into(), rotation: roll_pitch_yaw(visual.rpy) };
     DrawnSolid { color: visual.color, ..placed(place, frame, form, bodies, values) }
 }
 

@@ -8,7 +8,7 @@ use super::reducing::keep_reduced;
 use crate::methods::{Effort, Sampling, Simulated, Stop, StopCause, Until};
 use crate::numerics::Sample;
 use crate::simulate::{SimulationError, reduced_rows};
-use crate::study::black_box::source::Source;
+use crate::study::black_box::source::ProgramSource;
 
 /// As [`Ensemble::simulate`](crate::methods::Ensemble::simulate), by the answers of a program; `reduce` gets all
 /// rows at once. A sample without an answer stops in its first row.
@@ -17,7 +17,7 @@ use crate::study::black_box::source::Source;
 /// Where the program cannot be started.
 pub fn answered(
     motions: &Motions,
-    source: &Source,
+    source: &ProgramSource,
     samples: &[Sample],
     sampling: Sampling,
     reduce: &mut dyn FnMut(Rows<usize>, &[f64]),

@@ -23,7 +23,7 @@ use symdiff::jet::JetSpace;
 use symdiff::taylor_model::ModelSpace;
 
 use self::reducing::keep_reduced;
-use super::black_box::source::Source;
+use super::black_box::source::ProgramSource;
 use super::price::instructions_of_step;
 use super::reduced::Store;
 use crate::certificate::Certified;
@@ -70,7 +70,7 @@ pub(super) struct Motions<'a> {
     /// Where simulations are stored, if they are.
     stored: Option<Stored<'a>>,
     /// The program that answers instead of a mechanism, if one does.
-    pub(super) source: Option<&'a Source>,
+    pub(super) source: Option<&'a ProgramSource>,
 }
 
 impl<'a> Motions<'a> {
@@ -131,7 +131,7 @@ impl<'a> Motions<'a> {
     }
 
     /// The same, whose samples a program answers.
-    pub fn answered_by(self, source: Option<&'a Source>) -> Self {
+    pub fn answered_by(self, source: Option<&'a ProgramSource>) -> Self {
         Self { source, ..self }
     }
 

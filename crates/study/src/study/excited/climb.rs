@@ -5,14 +5,14 @@
 //! Else the kernel under that function is another one, and so is the function: u ← sign(Bᵀλ) until the end stops
 //! growing. A step that is worse is halved.
 
-use super::motions::{Asked, ExcitedMotions, functional, in_row};
+use super::motions::{ExcitedMotions, WeightedPoint, functional, in_row};
 use super::point::Point;
 use super::tuning::TUNING;
 use crate::numerics::{Worst, value};
 use crate::simulate::Gradient;
 
 /// A climb to an end.
-pub struct Climb {
+pub struct FunctionClimb {
     pub row: usize,
     pub output: usize,
     /// 1 of the upper end, −1 of the lower.
@@ -43,7 +43,7 @@ pub struct Climb {
     promises: Vec<f64>,
 }
 
-impl Climb {
+impl FunctionClimb {
     /// From a point.
     pub fn new(row: usize, output: usize, sign: f64, start: Point) -> Self {
         Self {
@@ -87,7 +87,7 @@ impl Climb {
     }
 
     /// The point to go to, with the output that is asked for there.
-    pub fn asked(&self) -> Option<Asked<'_>> {
+    pub fn asked(&self) -> Option<WeightedPoint<'_>> {
         self.next.as_ref().map(|point| (point, in_row(self.row, self.output)))
     }
 

@@ -6,8 +6,8 @@
 //! from the middle, from the constants and from the best functions of the ends around them; those between learn from
 //! these.
 
-use super::climb::Climb;
-use super::motions::{Asked, ExcitedMotions, in_row};
+use super::climb::FunctionClimb;
+use super::motions::{ExcitedMotions, WeightedPoint, in_row};
 use super::point::Point;
 use super::tuning::TUNING;
 use crate::numerics::{SAFETY_OF_STEPS, step_error};
@@ -63,12 +63,12 @@ impl Search<'_, '_> {
     /// Ends of some outputs in rows that are linear in the functions; the others are noted as bent.
     fn straight(&mut self, some: &[(usize, usize)], checked: &[usize]) -> Result<(), SimulationError> {
         let middle = self.motions.middle();
-        let asked: Vec<Asked> = some.iter().map(|&(row, output)| (&middle, in_row(row, output))).collect();
+        let asked: Vec<WeightedPoint> = some.iter().map(|&(row, output)| (&middle, in_row(row, output))).collect();
         let kernels = self.motions.gradients(&asked)?;
-        let mut climbs: Vec<Climb> = Vec::with_capacity(2 * some.len());
+        let mut climbs: Vec<FunctionClimb> = Vec::with_capacity(2 * some.len());
         for (&(row, output), kernel) in some.iter().zip(&kernels) {
             for sign in [-1.0, 1.0] {
-                let mut climb = Climb::new(row, output, sign, middle.clone());
+                let mut climb = FunctionClimb::new(row, output, sign, middle.clone());
                 climb.take(kernel, &self.motions);
                 self.found.note_parts(row, output, &climb.parts);
                 climbs.push(climb);
@@ -80,7 +80,7 @@ impl Search<'_, '_> {
             // Those may matter under a function only: their derivatives are known there.
             going
         } else {
-            let asked: Vec<Asked> = going.iter().filter_map(|&number| climbs[number].asked()).collect();
+            let asked: Vec<WeightedPoint> = going.iter().filter_map(|&number| climbs[number].asked()).collect();
             let values = self.motions.values(&asked, 1)?;
             let bent = |(number, value): (usize, f64)| (!climbs[number].arrive(value)).then_some(number);
             going.into_iter().zip(values).filter_map(bent).collect()
@@ -96,7 +96,7 @@ impl Search<'_, '_> {
             }
         }
         climbs.retain(|climb| climb.best.is_some());
-        let (measured, others): (Vec<Climb>, Vec<Climb>) =
+        let (measured, others): (Vec<FunctionClimb>, Vec<FunctionClimb>) =
             climbs.into_iter().partition(|climb| checked.contains(&climb.row));
         others.iter().for_each(|climb| self.note(climb));
         self.note_measured(&measured)
@@ -107,12 +107,12 @@ impl Search<'_, '_> {
         let mut bent = std::mem::take(&mut self.bent);
         bent.sort_by(|a, b| a.output.cmp(&b.output).then(a.sign.total_cmp(&b.sign)).then(a.row.cmp(&b.row)));
         // The last row of each output's end, and every so many before it.
-        let (mut followed, mut between): (Vec<Climb>, Vec<Bent>) = (Vec::new(), Vec::new());
+        let (mut followed, mut between): (Vec<FunctionClimb>, Vec<Bent>) = (Vec::new(), Vec::new());
         for of_end in bent.chunk_by(|a, b| a.output == b.output && a.sign == b.sign) {
             let every = of_end.len().div_ceil(TUNING.followed_rows);
             for (number, own) in of_end.iter().enumerate() {
                 if (of_end.len() - 1 - number) % every == 0 {
-                    followed.push(Climb::new(own.row, own.output, own.sign, self.motions.middle()));
+                    followed.push(FunctionClimb::new(own.row, own.output, own.sign, self.motions.middle()));
                 } else {
                     between.push(Bent { ..*own });
                 }
@@ -128,7 +128,7 @@ impl Search<'_, '_> {
     }
 
     /// Goes on with climbs until all are done, in so many steps at most.
-    fn follow(&mut self, climbs: &mut [Climb], steps: usize) -> Result<(), SimulationError> {
+    fn follow(&mut self, climbs: &mut [FunctionClimb], steps: usize) -> Result<(), SimulationError> {
         for _ in 0..steps {
             let going: Vec<usize> = (0..climbs.len()).filter(|&number| climbs[number].next.is_some()).collect();
             if going.is_empty() {
@@ -140,8 +140,8 @@ impl Search<'_, '_> {
     }
 
     /// A step of some climbs.
-    fn step(&mut self, climbs: &mut [Climb], going: &[usize]) -> Result<(), SimulationError> {
-        let asked: Vec<Asked> = going.iter().filter_map(|&number| climbs[number].asked()).collect();
+    fn step(&mut self, climbs: &mut [FunctionClimb], going: &[usize]) -> Result<(), SimulationError> {
+        let asked: Vec<WeightedPoint> = going.iter().filter_map(|&number| climbs[number].asked()).collect();
         let found = self.motions.gradients(&asked)?;
         for (&number, found) in going.iter().zip(found) {
             let climb = &mut climbs[number];
@@ -152,12 +152,12 @@ impl Search<'_, '_> {
 
     /// Climbs once more from the best functions of the ends around, as they are and moved by the time between, from the
     /// opposite function and from the two constants. More than once, since neighbours learn from one another.
-    fn start_elsewhere(&mut self, climbs: &mut [Climb]) -> Result<(), SimulationError> {
+    fn start_elsewhere(&mut self, climbs: &mut [FunctionClimb]) -> Result<(), SimulationError> {
         for round in 0..TUNING.rounds {
             let (mut numbers, mut others) = (Vec::new(), Vec::new());
             for (number, climb) in climbs.iter().enumerate() {
                 let around = [number.checked_sub(1), Some(number + 1)].into_iter().flatten();
-                let mut starts: Vec<Climb> = around
+                let mut starts: Vec<FunctionClimb> = around
                     .filter_map(|other| climbs.get(other))
                     .filter(|other| other.output == climb.output && other.sign == climb.sign)
                     .flat_map(|other| self.of_neighbour(climb.row, other))
@@ -168,9 +168,9 @@ impl Search<'_, '_> {
                         xi: best.xi.clone(),
                         functions: classes.iter().map(|class| class.constant(sign, &self.motions.ends)).collect(),
                     };
-                    let start = |point: Point| Climb::new(climb.row, climb.output, climb.sign, point);
+                    let start = |point: Point| FunctionClimb::new(climb.row, climb.output, climb.sign, point);
                     starts.extend([-1.0, 1.0].map(constant).map(start));
-                    starts.push(Climb::guided(climb.row, climb.output, climb.sign, best.opposite()));
+                    starts.push(FunctionClimb::guided(climb.row, climb.output, climb.sign, best.opposite()));
                 }
                 numbers.extend(starts.iter().map(|_| number));
                 others.extend(starts);
@@ -183,18 +183,23 @@ impl Search<'_, '_> {
     }
 
     /// Climbs to the same end in another row: from its function, and from that moved by the time between the rows.
-    fn of_neighbour(&self, row: usize, other: &Climb) -> Vec<Climb> {
+    fn of_neighbour(&self, row: usize, other: &FunctionClimb) -> Vec<FunctionClimb> {
         let Some((point, _)) = &other.best else { return Vec::new() };
         let by = self.motions.schedule.time(row) - self.motions.schedule.time(other.row);
         vec![
-            Climb::new(row, other.output, other.sign, point.clone()),
-            Climb::guided(row, other.output, other.sign, point.later(by, &self.motions.ends, &self.motions.ends)),
+            FunctionClimb::new(row, other.output, other.sign, point.clone()),
+            FunctionClimb::guided(
+                row,
+                other.output,
+                other.sign,
+                point.later(by, &self.motions.ends, &self.motions.ends),
+            ),
         ]
     }
 
     /// Bent ends between those that are followed: those of which the kernel settled at once, and climbs from their
     /// neighbours' functions. They may be as far off as starts from elsewhere improve their neighbours.
-    fn learn(&mut self, some: &[Bent], followed: &[Climb]) -> Result<(), SimulationError> {
+    fn learn(&mut self, some: &[Bent], followed: &[FunctionClimb]) -> Result<(), SimulationError> {
         let (mut numbers, mut climbs) = (Vec::new(), Vec::new());
         let mut improved = vec![0.0_f64; some.len()];
         for (number, own) in some.iter().enumerate() {
@@ -214,7 +219,7 @@ impl Search<'_, '_> {
             }
         }
         self.follow(&mut climbs, TUNING.steps_of_learnt)?;
-        let mut best: Vec<Option<Climb>> = some.iter().map(|_| None).collect();
+        let mut best: Vec<Option<FunctionClimb>> = some.iter().map(|_| None).collect();
         for (number, climb) in numbers.into_iter().zip(climbs) {
             if best[number].as_ref().is_none_or(|known| climb.reached() > known.reached()) {
                 best[number] = Some(climb);
@@ -236,11 +241,11 @@ impl Search<'_, '_> {
     }
 
     /// Notes what climbs found, with what halved steps change there.
-    fn note_measured(&mut self, climbs: &[Climb]) -> Result<(), SimulationError> {
-        let known: Vec<&Climb> = climbs.iter().filter(|climb| climb.best.is_some()).collect();
-        let point = |climb: &&'_ Climb| climb.best.as_ref().map(|(point, _)| point.clone());
+    fn note_measured(&mut self, climbs: &[FunctionClimb]) -> Result<(), SimulationError> {
+        let known: Vec<&FunctionClimb> = climbs.iter().filter(|climb| climb.best.is_some()).collect();
+        let point = |climb: &&'_ FunctionClimb| climb.best.as_ref().map(|(point, _)| point.clone());
         let points: Vec<Point> = known.iter().filter_map(point).collect();
-        let asked: Vec<Asked> =
+        let asked: Vec<WeightedPoint> =
             points.iter().zip(&known).map(|(point, climb)| (point, in_row(climb.row, climb.output))).collect();
         let halved = self.motions.values(&asked, 2)?;
         let jumps = self.motions.jumps();
@@ -255,8 +260,8 @@ impl Search<'_, '_> {
     }
 
     /// Notes what a climb found.
-    fn note(&mut self, climb: &Climb) {
-        let Climb { row, output, sign, .. } = *climb;
+    fn note(&mut self, climb: &FunctionClimb) {
+        let FunctionClimb { row, output, sign, .. } = *climb;
         let Some((point, reached)) = &climb.best else { return };
         let value = sign * reached;
         self.found.note(row, output, sign > 0.0, FunctionEnd { value, open: climb.open() });

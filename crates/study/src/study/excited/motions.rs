@@ -7,13 +7,13 @@ use super::point::Point;
 use crate::model::{Class, Excitation};
 use crate::numerics::{Cell, FunctionClass, Sample};
 use crate::simulate::{
-    Functional, Functions, Gradient, NoGradient, Schedule, SimulationError, Simulator, Term, Under, gradients_under,
+    CellFunctions, Functional, Gradient, NoGradient, Schedule, SimulationError, Simulator, Term, Under, gradients_under,
 };
 use crate::study::bounding::WorstFunction;
 use crate::study::problem::Study;
 
 /// A weighted sum of outputs in rows at a point.
-pub type Asked<'p> = (&'p Point, Vec<Term>);
+pub type WeightedPoint<'p> = (&'p Point, Vec<Term>);
 
 /// An output in a row.
 pub fn in_row(row: usize, output: usize) -> Vec<Term> {
@@ -112,7 +112,7 @@ impl<'s, 'm> ExcitedMotions<'s, 'm> {
     ///
     /// # Errors
     /// Where a sample cannot be assembled, and at an interruption.
-    pub fn gradients(&mut self, asked: &[Asked]) -> Result<Vec<Gradient>, SimulationError> {
+    pub fn gradients(&mut self, asked: &[WeightedPoint]) -> Result<Vec<Gradient>, SimulationError> {
         self.count += asked.len();
         self.run(&self.schedule, asked, true)
     }
@@ -121,7 +121,7 @@ impl<'s, 'm> ExcitedMotions<'s, 'm> {
     ///
     /// # Errors
     /// As for gradients.
-    pub fn values(&mut self, asked: &[Asked], parts: usize) -> Result<Vec<f64>, SimulationError> {
+    pub fn values(&mut self, asked: &[WeightedPoint], parts: usize) -> Result<Vec<f64>, SimulationError> {
         Ok(self.all_values(asked, parts)?.into_iter().map(|found| found.value).collect())
     }
 
@@ -129,17 +129,22 @@ impl<'s, 'm> ExcitedMotions<'s, 'm> {
     ///
     /// # Errors
     /// As for gradients.
-    pub fn all_values(&mut self, asked: &[Asked], parts: usize) -> Result<Vec<Gradient>, SimulationError> {
+    pub fn all_values(&mut self, asked: &[WeightedPoint], parts: usize) -> Result<Vec<Gradient>, SimulationError> {
         self.count += asked.len();
         self.run(&self.schedule.refined(parts), asked, false)
     }
 
-    fn run(&self, schedule: &Schedule, asked: &[Asked], backwards: bool) -> Result<Vec<Gradient>, SimulationError> {
+    fn run(
+        &self,
+        schedule: &Schedule,
+        asked: &[WeightedPoint],
+        backwards: bool,
+    ) -> Result<Vec<Gradient>, SimulationError> {
         let samples: Vec<Sample> = asked.iter().map(|(point, _)| self.sample(point)).collect();
-        let wanted = |(sample, (_, terms)): (usize, &Asked)| Functional { sample, terms: terms.clone() };
+        let wanted = |(sample, (_, terms)): (usize, &WeightedPoint)| Functional { sample, terms: terms.clone() };
         let wanted: Vec<Functional> = asked.iter().enumerate().map(wanted).collect();
         let values: Vec<Vec<f64>> = asked.iter().map(|(point, _)| point.inputs()).collect();
-        let under = Under { functions: Some(Functions { ends: &self.ends, values: &values }), backwards };
+        let under = Under { functions: Some(CellFunctions { ends: &self.ends, values: &values }), backwards };
         let found = gradients_under(self.simulator, schedule, &samples, &wanted, under, self.study.interruption);
         found.map_err(simulation)
     }

@@ -4,7 +4,7 @@
 //! there; the kernel is straight between the middles of cells, and its zero is the next τ. Steps then end there, as
 //! long as the end grows.
 
-use super::climb::Climb;
+use super::climb::FunctionClimb;
 use super::motions::{ExcitedMotions, functional, in_row};
 use super::point::Point;
 use super::tuning::TUNING;
@@ -55,11 +55,11 @@ fn settled(
         point = point.later(0.0, &ends, &finer.ends);
         ends = finer.ends.clone();
         // The kernel on these cells names the function: the one before may be none of the class on them.
-        let mut climb = Climb::new(own.row, output, sign, point.clone());
+        let mut climb = FunctionClimb::new(own.row, output, sign, point.clone());
         gradient = finer.gradients(&[(&point, in_row(own.row, output))])?.swap_remove(0);
         climb.take(&gradient, &finer);
         let Some(next) = climb.next else { break };
-        let mut climb = Climb::new(own.row, output, sign, next);
+        let mut climb = FunctionClimb::new(own.row, output, sign, next);
         if let Some(asked) = climb.asked() {
             gradient = finer.gradients(&[asked])?.swap_remove(0);
         }

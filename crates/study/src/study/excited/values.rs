@@ -4,8 +4,8 @@
 //! weighted sum names the next function, as that of an output in a row does. A peak can go no further than the ends of
 //! its source in the rows: these say how much is open.
 
-use super::climb::Climb;
-use super::motions::{Asked, ExcitedMotions};
+use super::climb::FunctionClimb;
+use super::motions::{ExcitedMotions, WeightedPoint};
 use super::point::Point;
 use super::tuning::TUNING;
 use crate::assemble::NumberFormulas;
@@ -76,7 +76,7 @@ pub fn ends_of_values(
 struct OfValue {
     /// Index in the list of values.
     number: usize,
-    climb: Climb,
+    climb: FunctionClimb,
 }
 
 /// How far a value can go at most.
@@ -102,7 +102,7 @@ impl Values<'_, '_, '_> {
         for (number, (_, value)) in self.all.iter().enumerate() {
             for sign in [-1.0, 1.0] {
                 let climb = |Start { point, is_guide, .. }: &Start| {
-                    let begin = if *is_guide { Climb::guided } else { Climb::new };
+                    let begin = if *is_guide { FunctionClimb::guided } else { FunctionClimb::new };
                     OfValue { number, climb: begin(0, number, sign, point.clone()) }
                 };
                 let own = self.sources_of(value);
@@ -204,7 +204,7 @@ impl Values<'_, '_, '_> {
         let numbers: Vec<usize> = going.iter().map(|&number| climbs[number].number).collect();
         let linear = self.linear(&points, &numbers, 1, 1)?;
         let known = || linear.iter().zip(&points).filter_map(|(own, point)| Some((own.as_ref()?, point)));
-        let asked: Vec<Asked> = known().map(|(own, point)| (point, own.terms.clone())).collect();
+        let asked: Vec<WeightedPoint> = known().map(|(own, point)| (point, own.terms.clone())).collect();
         let mut gradients = self.motions.gradients(&asked)?.into_iter();
         for (&number, own) in going.iter().zip(&linear) {
             let climb = &mut climbs[number].climb;
@@ -233,7 +233,7 @@ impl Values<'_, '_, '_> {
             (0..self.times.len()).rev().step_by(every).collect::<Vec<_>>().into_iter().rev().collect();
         let of_source = |&output: &usize| rows.iter().map(move |&row| Term { row, output, weight: 1.0 });
         let terms: Vec<Term> = self.sources.iter().flat_map(of_source).collect();
-        let asked: Vec<Asked> = points.iter().map(|point| (point, terms.clone())).collect();
+        let asked: Vec<WeightedPoint> = points.iter().map(|point| (point, terms.clone())).collect();
         let found = self.motions.all_values(&asked, parts)?;
         let times: Vec<f64> = rows.iter().map(|&row| self.times[row]).collect();
         let value = |((found, &number), point): ((Gradient, &usize), &Point)| {

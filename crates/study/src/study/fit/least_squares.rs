@@ -2,8 +2,8 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::local::{Frame, Local};
-use super::readings::{Finer, Run};
+use super::local::{Local, SkewAxes};
+use super::readings::{Finer, SurrogateRun};
 use super::tuning::TUNING;
 use super::{FitError, Measurements};
 use crate::model::Description;
@@ -30,7 +30,7 @@ pub struct Covariance {
 /// An estimate on surrogates over a box around it.
 pub struct Minimum {
     /// Axes along those of the parameters.
-    pub frame: Frame,
+    pub frame: SkewAxes,
     pub local: Local,
     /// η in the frame.
     pub eta: Vec<f64>,
@@ -45,14 +45,14 @@ pub fn minimum(
     description: &Description,
     measurements: &Measurements,
     prior: &ParameterBox,
-    first: Frame,
+    first: SkewAxes,
     options: &Options,
 ) -> Result<Minimum, FitError> {
     let k = prior.dimension();
     let (mut frame, mut simulations, mut before) = (first, 0, f64::INFINITY);
     let mut best: Option<Minimum> = None;
     for round in 0..TUNING.boxes {
-        let run = Run::new(description, &frame.domain(prior), Finer::default(), options)?;
+        let run = SurrogateRun::new(description, &frame.domain(prior), Finer::default(), options)?;
         simulations += run.simulations;
         let local = Local::new(&run.readings(measurements)?, &frame, prior, measurements, TUNING.coarse)?;
         let starts = if round == 0 { TUNING.starts } else { 0 };
@@ -66,7 +66,7 @@ pub fn minimum(
         let xi = frame.xi(&eta);
         let scale = if is_at_edge { 1.0 } else { TUNING.next_box };
         let halves: Vec<f64> = ends.iter().map(|[lower, upper]| scale * 0.5 * (upper - lower)).collect();
-        let next = Frame::around(&xi, &halves);
+        let next = SkewAxes::around(&xi, &halves);
         best = Some(Minimum { frame: std::mem::replace(&mut frame, next), local, eta, simulations });
         if !is_at_edge && (roughness <= TUNING.rough || roughness > TUNING.better * before) {
             break;

@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::readings::{Readings, Values};
+use super::readings::{ReadValues, Readings};
 use super::tuning::TUNING;
 use super::{FitError, Measurements};
 use crate::numerics::{
@@ -12,7 +12,7 @@ use crate::numerics::{
 
 /// Skew axes: ξ = center + axes · η, η ∈ [−1, 1]^k, in multiples of the half intervals of the model's box.
 #[derive(Clone, Debug)]
-pub struct Frame {
+pub struct SkewAxes {
     pub center: DVector<f64>,
     pub axes: DMatrix<f64>,
 }
@@ -27,7 +27,7 @@ pub struct Local {
     basis: SparseBasis,
 }
 
-impl Frame {
+impl SkewAxes {
     /// The model's box.
     pub fn whole(k: usize) -> Self {
         Self { center: DVector::zeros(k), axes: DMatrix::identity(k, k) }
@@ -91,7 +91,7 @@ impl Local {
     /// Where the outputs have no value within the frame.
     pub fn new(
         readings: &Readings,
-        frame: &Frame,
+        frame: &SkewAxes,
         prior: &ParameterBox,
         measurements: &Measurements,
         fine: f64,
@@ -133,7 +133,13 @@ impl Local {
     }
 
     /// Polynomials through nodes, with their differences from held-out values and errors of interpolation in time.
-    fn fitted(surrogate: &Surrogate, nodes: &Values, held_out: &[Vec<f64>], direct: &Values, degree: usize) -> Self {
+    fn fitted(
+        surrogate: &Surrogate,
+        nodes: &ReadValues,
+        held_out: &[Vec<f64>],
+        direct: &ReadValues,
+        degree: usize,
+    ) -> Self {
         let basis = surrogate.basis().clone();
         let mut work = SurrogateWork::default();
         let coefficients = surrogate.coefficients(&nodes.values.concat(), &mut work);
@@ -152,7 +158,7 @@ impl Local {
     }
 
     /// With the intervals of measured values: rows of which nothing is known are left out, the model's box is added.
-    fn within(mut self, frame: &Frame, own: &[f64], measurements: &Measurements) -> Self {
+    fn within(mut self, frame: &SkewAxes, own: &[f64], measurements: &Measurements) -> Self {
         let size = self.basis.len();
         let mut coefficients = Vec::new();
         self.rows.clear();

@@ -19,12 +19,12 @@ pub use data::{DataError, Measurements, NoiseBound};
 
 use crate::numerics::Interpolation;
 use least_squares::{DEVIATION, Minimum, is_short, linearised, minimum};
-use local::{Frame, Local, values};
-use readings::{Finer, Run};
+use local::{Local, SkewAxes, values};
+use readings::{Finer, SurrogateRun};
 use set::Set;
 use unexplained::unexplained;
 
-use super::{Chosen, Options, RunError, pool, sample, uncertain};
+use super::{ChosenSamples, Options, RunError, pool, sample, uncertain};
 use crate::model::Description;
 use crate::numerics::{ParameterBox, Sample};
 use crate::results::{Fit, FitOutput, FitParameter, FitRow};
@@ -71,7 +71,7 @@ fn fitted(model: &Description, measurements: &Measurements, options: &Options) -
     let (parameters, prior) = uncertain(model);
     let k = prior.dimension();
     (options.stage)("surrogates");
-    let run = Run::new(model, &prior, Finer::default(), options)?;
+    let run = SurrogateRun::new(model, &prior, Finer::default(), options)?;
     let mut simulations = run.simulations;
     let (mut set, mut is_empty, mut errors) = (None, false, None);
     if k <= Fit::MOST_PARAMETERS {
@@ -89,7 +89,7 @@ fn fitted(model: &Description, measurements: &Measurements, options: &Options) -
     let contradiction = if is_empty {
         (options.stage)("rows without an explanation");
         let readings = run.readings(measurements)?.strict(true);
-        let whole = Local::new(&readings, &Frame::whole(k), &prior, measurements, TUNING.coarse)?;
+        let whole = Local::new(&readings, &SkewAxes::whole(k), &prior, measurements, TUNING.coarse)?;
         Some(unexplained(&whole, &minimum.local, measurements, options.interrupted))
     } else {
         None
@@ -129,11 +129,11 @@ fn fitted(model: &Description, measurements: &Measurements, options: &Options) -
 
 /// Where least squares begin: about the hull of the consistent set, which their estimate may lie outside of, or the
 /// model's box.
-fn around(hull: Option<&[[f64; 2]]>, k: usize) -> Frame {
-    let Some(hull) = hull else { return Frame::whole(k) };
+fn around(hull: Option<&[[f64; 2]]>, k: usize) -> SkewAxes {
+    let Some(hull) = hull else { return SkewAxes::whole(k) };
     let middle: Vec<f64> = hull.iter().map(|[lower, upper]| 0.5 * (lower + upper)).collect();
     let halves: Vec<f64> = hull.iter().map(|[lower, upper]| 0.5 * TUNING.around * (upper - lower)).collect();
-    Frame::around(&middle, &halves)
+    SkewAxes::around(&middle, &halves)
 }
 
 /// Measured outputs and values.
@@ -218,7 +218,7 @@ fn simulated(
     options: &Options,
 ) -> Result<Vec<f64>, FitError> {
     let point = Sample::from(point.to_vec());
-    let chosen = Chosen { count: 1, at: &|_| vec![point.clone()] };
+    let chosen = ChosenSamples { count: 1, at: &|_| vec![point.clone()] };
     let options = Options { methods: None, store: None, ..*options };
     sample(model, &options, chosen, |trajectories| {
         let mut values = Vec::new();

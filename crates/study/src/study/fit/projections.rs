@@ -1,6 +1,6 @@
 //! Shadows of the consistent set on pairs of parameters, as rows of a raster.
 
-use super::local::{Frame, value};
+use super::local::{SkewAxes, value};
 use super::tuning::TUNING;
 use crate::numerics::{Boxes, ParameterBox, Paving};
 use crate::results::FitProjection;
@@ -13,7 +13,7 @@ struct Raster {
 }
 
 /// Of every pair of parameters, within the hull of ξ.
-pub fn projections(frame: &Frame, paving: &Paving, hull: &[[f64; 2]], prior: &ParameterBox) -> Vec<FitProjection> {
+pub fn projections(frame: &SkewAxes, paving: &Paving, hull: &[[f64; 2]], prior: &ParameterBox) -> Vec<FitProjection> {
     let k = prior.dimension();
     let pairs = (0..k).flat_map(|first| (first + 1..k).map(move |second| [first, second]));
     let of = |pair: [usize; 2]| {
@@ -39,7 +39,7 @@ pub fn projections(frame: &Frame, paving: &Paving, hull: &[[f64; 2]], prior: &Pa
 }
 
 /// The shadow of a box along skew axes: a convex polygon of ξ, as its corners in order.
-fn shadow(frame: &Frame, pair: [usize; 2], lower: &[f64], upper: &[f64]) -> Vec<[f64; 2]> {
+fn shadow(frame: &SkewAxes, pair: [usize; 2], lower: &[f64], upper: &[f64]) -> Vec<[f64; 2]> {
     let axes = &frame.axes;
     let mut start = pair.map(|axis| frame.center[axis]);
     let mut edges: Vec<[f64; 2]> = Vec::with_capacity(2 * lower.len());

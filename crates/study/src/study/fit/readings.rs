@@ -12,7 +12,7 @@ use crate::study::allocate::{raise, run_simulations};
 use crate::study::{Evaluator, Kept, Options, run_keeping};
 
 /// Surrogates over a box of the parameters.
-pub struct Run {
+pub struct SurrogateRun {
     kept: Kept,
     /// Their box, in the parameters' units.
     pub domain: ParameterBox,
@@ -43,14 +43,14 @@ struct Reading {
 }
 
 /// Values at samples.
-pub struct Values {
+pub struct ReadValues {
     /// By measured row, then sample.
     pub values: Vec<Vec<f64>>,
     /// By measured row: the largest difference of both interpolations in time.
     pub interpolation: Vec<f64>,
 }
 
-impl Run {
+impl SurrogateRun {
     /// Over a box within the model's.
     ///
     /// # Errors
@@ -135,7 +135,7 @@ impl Readings<'_> {
     }
 
     /// Values at samples (values of all parameters in their units); NaN where one is not known.
-    pub fn at(&self, samples: &[Vec<f64>]) -> Values {
+    pub fn at(&self, samples: &[Vec<f64>]) -> ReadValues {
         let mut wanted: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
         for reading in &self.rows {
             let fine = reading.interpolation.iter().flat_map(|own| &own.fine);
@@ -175,6 +175,6 @@ impl Readings<'_> {
             }
         };
         let (values, interpolation) = self.rows.iter().map(of).unzip();
-        Values { values, interpolation }
+        ReadValues { values, interpolation }
     }
 }

@@ -2,9 +2,9 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::local::{Frame, Local};
+use super::local::{Local, SkewAxes};
 use super::projections::projections;
-use super::readings::{Finer, Run};
+use super::readings::{Finer, SurrogateRun};
 use super::tuning::TUNING;
 use super::{FitError, Measurements};
 use crate::model::Description;
@@ -18,7 +18,7 @@ const APPROACH: PavingLimits = PavingLimits { undecided: 0.3, boxes: 1 << 12, nu
 const LAST: PavingLimits = PavingLimits { undecided: 0.02, boxes: 1 << 18, numbers: 1 << 25 };
 
 /// The end of the approach.
-pub struct Found {
+pub struct FoundSet {
     /// `None` where it is empty.
     pub set: Option<Set>,
     /// Simulations of narrower boxes.
@@ -29,7 +29,7 @@ pub struct Found {
 
 /// A set that is not empty.
 pub struct Set {
-    pub frame: Frame,
+    pub frame: SkewAxes,
     pub paving: Paving,
 }
 
@@ -42,9 +42,9 @@ pub fn found(
     description: &Description,
     measurements: &Measurements,
     prior: &ParameterBox,
-    first: &Run,
+    first: &SurrogateRun,
     options: &Options,
-) -> Result<Found, FitError> {
+) -> Result<FoundSet, FitError> {
     let approach = Approach::begun(description, prior, first, options);
     let mut has_flagged = false;
     let found = approached(approach, measurements, &mut has_flagged)?;
@@ -53,10 +53,14 @@ pub fn found(
     }
     let approach = Approach { strict: true, ..Approach::begun(description, prior, first, options) };
     let again = approached(approach, measurements, &mut has_flagged)?;
-    Ok(Found { simulations: again.simulations + found.simulations, ..again })
+    Ok(FoundSet { simulations: again.simulations + found.simulations, ..again })
 }
 
-fn approached(mut approach: Approach, measurements: &Measurements, has_flagged: &mut bool) -> Result<Found, FitError> {
+fn approached(
+    mut approach: Approach,
+    measurements: &Measurements,
+    has_flagged: &mut bool,
+) -> Result<FoundSet, FitError> {
     let few = measurements.thinned(TUNING.first_values);
     let mut used = &few;
     let options = approach.options;
@@ -69,7 +73,7 @@ fn approached(mut approach: Approach, measurements: &Measurements, has_flagged: 
             return Err(FitError::Interrupted);
         }
         if paving.volumes()[1] == 0.0 {
-            return Ok(Found { set: None, simulations: approach.simulations, errors: None });
+            return Ok(FoundSet { set: None, simulations: approach.simulations, errors: None });
         }
         let next = fitted(&approach.frame, &paving);
         let shrinks = volume(&next) < TUNING.shrunk * volume(&approach.frame);
@@ -91,7 +95,7 @@ fn approached(mut approach: Approach, measurements: &Measurements, has_flagged: 
     }
     let is_empty = paving.volumes()[1] == 0.0;
     let Approach { frame, simulations, .. } = approach;
-    Ok(Found { set: (!is_empty).then_some(Set { frame, paving }), simulations, errors: Some(local.errors) })
+    Ok(FoundSet { set: (!is_empty).then_some(Set { frame, paving }), simulations, errors: Some(local.errors) })
 }
 
 /// Difference of a paving's volumes as a share of the outer one.
@@ -105,12 +109,12 @@ struct Approach<'a> {
     description: &'a Description,
     prior: &'a ParameterBox,
     options: &'a Options<'a>,
-    first: &'a Run,
+    first: &'a SurrogateRun,
     /// Over a narrower box, where there is one.
-    narrower: Option<Run>,
+    narrower: Option<SurrogateRun>,
     /// Whether rows that are flagged tell nothing.
     strict: bool,
-    frame: Frame,
+    frame: SkewAxes,
     runs: usize,
     finer: Finer,
     /// Error in the round before the last run, in multiples of the noise.
@@ -119,15 +123,20 @@ struct Approach<'a> {
 }
 
 impl<'a> Approach<'a> {
-    fn begun(description: &'a Description, prior: &'a ParameterBox, first: &'a Run, options: &'a Options<'a>) -> Self {
-        let frame = Frame::whole(prior.dimension());
+    fn begun(
+        description: &'a Description,
+        prior: &'a ParameterBox,
+        first: &'a SurrogateRun,
+        options: &'a Options<'a>,
+    ) -> Self {
+        let frame = SkewAxes::whole(prior.dimension());
         let before = f64::INFINITY;
         let finer = Finer::default();
         let (narrower, strict) = (None, false);
         Self { description, prior, options, first, narrower, strict, frame, runs: 1, finer, before, simulations: 0 }
     }
 
-    fn run(&self) -> &Run {
+    fn run(&self) -> &SurrogateRun {
         self.narrower.as_ref().unwrap_or(self.first)
     }
 
@@ -177,7 +186,7 @@ impl<'a> Approach<'a> {
 
     /// A run over a box, in place of the one before. Returns whether there is one.
     fn rerun(&mut self, domain: &ParameterBox) -> Result<bool, FitError> {
-        match Run::new(self.description, domain, self.finer, self.options) {
+        match SurrogateRun::new(self.description, domain, self.finer, self.options) {
             Ok(run) => {
                 self.runs += 1;
                 self.simulations += run.simulations;
@@ -199,7 +208,7 @@ fn is_narrower(domain: &ParameterBox, than: &ParameterBox) -> bool {
     (0..domain.dimension()).any(|axis| domain.half_width(axis) < TUNING.shrunk * than.half_width(axis))
 }
 
-fn volume(frame: &Frame) -> f64 {
+fn volume(frame: &SkewAxes) -> f64 {
     frame.axes.clone().lu().determinant().abs()
 }
 
@@ -243,7 +252,7 @@ fn extents<'b>(boxes: impl Iterator<Item = (&'b [f64], &'b [f64])>, directions: 
 }
 
 /// Principal axes of a paving in ξ, as columns, and its extent along each from the frame's center.
-fn principal(frame: &Frame, paving: &Paving) -> (DMatrix<f64>, Vec<[f64; 2]>) {
+fn principal(frame: &SkewAxes, paving: &Paving) -> (DMatrix<f64>, Vec<[f64; 2]>) {
     let (_, covariance) = moments(paving, frame.center.len());
     let directions = (&frame.axes * covariance * frame.axes.transpose()).symmetric_eigen().eigenvectors;
     // v · ξ = v · center + (axesᵀ v) · η
@@ -252,14 +261,14 @@ fn principal(frame: &Frame, paving: &Paving) -> (DMatrix<f64>, Vec<[f64; 2]>) {
 }
 
 /// Axes along the principal ones of a paving, as long as it is.
-fn fitted(frame: &Frame, paving: &Paving) -> Frame {
+fn fitted(frame: &SkewAxes, paving: &Paving) -> SkewAxes {
     let (directions, extents) = principal(frame, paving);
     let (mut center, mut axes) = (frame.center.clone(), directions.clone());
     for (index, [lower, upper]) in extents.into_iter().enumerate() {
         center += directions.column(index) * (0.5 * (lower + upper));
         axes.column_mut(index).scale_mut(0.5 * (upper - lower).max(f64::EPSILON));
     }
-    Frame { center, axes }
+    SkewAxes { center, axes }
 }
 
 impl Set {

@@ -13,7 +13,7 @@ use crate::results::{GradientParameter, Gradients, OutputGradients};
 use crate::simulate::{NoGradient, SimulationError};
 use crate::study::black_box::needs_equations;
 use crate::study::reduced::expanded;
-use crate::study::sample::{Chosen, Trajectories, sample};
+use crate::study::sample::{ChosenSamples, Trajectories, sample};
 use crate::study::{Options, RunError};
 use crate::syntax::{Code, Coded};
 
@@ -56,7 +56,7 @@ pub fn gradient(description: &Description, options: &Options) -> Result<Gradient
     if description.outputs.is_empty() {
         return Err(GradientError::NoOutput);
     }
-    let none = Chosen { count: 0, at: &|_| Vec::new() };
+    let none = ChosenSamples { count: 0, at: &|_| Vec::new() };
     let mut found = sample(description, options, none, |trajectories| of_trajectories(trajectories, description))?;
     found.reduced = reduced::of_sources(description, &found);
     found.outputs.truncate(shown);

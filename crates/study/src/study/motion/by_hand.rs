@@ -6,7 +6,7 @@ use super::Posed;
 use super::reach::{Reach, Reached};
 use crate::numerics::Sample;
 use crate::results::Drawing;
-use crate::study::drawing::asked::Values;
+use crate::study::drawing::asked::DrawingValues;
 
 /// The point of a body that a hand holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -63,7 +63,7 @@ impl<'m> Hand<'m> {
         let weight = |line: usize| if line % numbers < first_angle { 1.0 } else { length };
         let wanted = |outputs: &[f64]| {
             let mut found = Vec::with_capacity(pose.len());
-            self.posed.pose(&Values(outputs.to_vec()), &mut found);
+            self.posed.pose(&DrawingValues(outputs.to_vec()), &mut found);
             found.iter().zip(pose).enumerate().map(|(line, (found, wanted))| weight(line) * (found - wanted)).collect()
         };
         self.now = self.reach.towards(&self.now, sample, &wanted);
@@ -75,7 +75,7 @@ impl<'m> Hand<'m> {
         let local = self.local(grip)?;
         let (posed, drawing) = (self.posed, self.drawing);
         let at = |outputs: &[f64]| {
-            let values = Values(outputs.to_vec());
+            let values = DrawingValues(outputs.to_vec());
             let points = posed.points(&values, drawing);
             let point = Vector3::from_column_slice(&points[3 * local..3 * local + 3]);
             values.frame(&posed.bodies[grip.body]).place(point)
@@ -86,7 +86,7 @@ impl<'m> Hand<'m> {
         };
         self.now = self.reach.towards(&self.now, sample, &wanted);
         let outputs = &self.now.outputs;
-        let values = Values(outputs.clone());
+        let values = DrawingValues(outputs.clone());
         let mut pose = Vec::with_capacity(posed.lines());
         posed.pose(&values, &mut pose);
         Some(Held {

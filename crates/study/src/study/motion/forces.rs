@@ -5,8 +5,8 @@
 
 use symdiff::Formula;
 
-use super::super::drawing::asked::{Asked, AskedVector, Values};
-use super::rows::Rows;
+use super::super::drawing::asked::{AskedVector, DrawingOutputs, DrawingValues};
+use super::rows::MotionRows;
 use super::tuning::TUNING;
 use crate::grammar::{PointRef, Sensor};
 use crate::model::{Analysis, Description};
@@ -37,14 +37,14 @@ fn simulated(
     times: &[f64],
     interruption: Interruption<'_>,
 ) -> Result<Vec<MovingForce>, RunError> {
-    let mut asked = Asked::default();
+    let mut asked = DrawingOutputs::default();
     let wanted = ask(description, &mut asked);
     if wanted.is_empty() {
         return Ok(Vec::new());
     }
     let numbers = asked.0.len();
-    let asking = Rows::asking(description, asked, interruption)?;
-    let mut rows: Vec<Values> = Vec::new();
+    let asking = MotionRows::asking(description, asked, interruption)?;
+    let mut rows: Vec<DrawingValues> = Vec::new();
     let nominal = [asking.domain.nominal.clone()];
     let (found, _) = asking.of_samples(description, &nominal, numbers, |_, _, values| rows.push(values))?;
     // Both runs have rows at the same times, this one perhaps more of them.
@@ -53,7 +53,7 @@ fn simulated(
         return Ok(Vec::new());
     }
     let along = |wanted: &AskedForce| -> Vec<f64> {
-        let at = |values: &Values| {
+        let at = |values: &DrawingValues| {
             let [place, force] = [wanted.at, wanted.force].map(|asked| values.vector(asked));
             [place.x, place.y, place.z, force.x, force.y, force.z]
         };
@@ -72,7 +72,7 @@ fn is_there(force: &MovingForce) -> bool {
     acts && force.values.iter().all(|value| value.is_finite())
 }
 
-fn ask(description: &Description, asked: &mut Asked) -> Vec<AskedForce> {
+fn ask(description: &Description, asked: &mut DrawingOutputs) -> Vec<AskedForce> {
     let spatial = description.space.spatial;
     let zero = || Formula::number(0.0);
     let named = |owner: &str, parts: [&str; 3]| {

@@ -13,7 +13,7 @@ mod thinning;
 pub(crate) mod tuning;
 mod worst;
 
-use super::drawing::asked::{Asked, AskedBody, Values};
+use super::drawing::asked::{AskedBody, DrawingOutputs, DrawingValues};
 use super::drawing::{drawn, extent, has_ground};
 use super::{RunError, caught, pool};
 use crate::model::Description;
@@ -22,7 +22,7 @@ use crate::results::{Drawing, FunctionWitness, Motion, MotionPolynomials, Moving
 use crate::simulate::Interruption;
 pub use by_hand::{Grip, Hand, Held};
 pub use movable::Movable;
-use rows::Rows;
+use rows::MotionRows;
 use samples::Samples;
 use thinning::Thinning;
 use tuning::TUNING;
@@ -78,7 +78,7 @@ fn motion(description: &Description, options: MotionOptions) -> Result<Motion, R
 
 /// A model that is asked for its bodies' poses in place of its outputs.
 pub(super) struct Posed<'a> {
-    pub(super) rows: Rows<'a>,
+    pub(super) rows: MotionRows<'a>,
     bodies: Vec<AskedBody>,
     /// Whether bodies leave the plane.
     spatial: bool,
@@ -94,10 +94,14 @@ struct Recorded {
 
 impl<'a> Posed<'a> {
     pub(super) fn compile(description: &Description, interruption: Interruption<'a>) -> Result<Self, RunError> {
-        let mut asked = Asked::default();
+        let mut asked = DrawingOutputs::default();
         let bodies = description.bodies.iter().enumerate();
         let bodies: Vec<AskedBody> = bodies.map(|(index, body)| asked.body(description, index, body)).collect();
-        Ok(Self { rows: Rows::asking(description, asked, interruption)?, bodies, spatial: description.space.spatial })
+        Ok(Self {
+            rows: MotionRows::asking(description, asked, interruption)?,
+            bodies,
+            spatial: description.space.spatial,
+        })
     }
 
     fn per_body(&self) -> usize {
@@ -237,7 +241,7 @@ impl<'a> Posed<'a> {
         Ok((times, recorded))
     }
 
-    fn pose(&self, values: &Values, into: &mut Vec<f64>) {
+    fn pose(&self, values: &DrawingValues, into: &mut Vec<f64>) {
         for body in &self.bodies[1..] {
             let frame = values.frame(body);
             let [x, y, z] = frame.position.into();
@@ -252,7 +256,7 @@ impl<'a> Posed<'a> {
     }
 
     /// Points of all bodies in their frames, as [`Poses`] has them.
-    fn points(&self, values: &Values, drawing: &Drawing) -> Vec<f64> {
+    fn points(&self, values: &DrawingValues, drawing: &Drawing) -> Vec<f64> {
         let of_body = |(asked, drawn): (&AskedBody, &crate::results::DrawnBody)| {
             let named = asked.points.iter().map(|&(point, _)| values.vector(point).into());
             let origin = (drawn.points.len() > asked.points.len()).then_some([0.0; 3]);

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use rayon::prelude::*;
 
-use super::super::drawing::asked::{Asked, Values};
+use super::super::drawing::asked::{DrawingOutputs, DrawingValues};
 use super::super::stepping::StepPlan;
 use super::super::{RunError, formulation};
 use super::tuning::TUNING;
@@ -17,7 +17,7 @@ use crate::simulate::{
 };
 
 /// A model that is asked for something in place of its outputs.
-pub(in crate::study) struct Rows<'a> {
+pub(in crate::study) struct MotionRows<'a> {
     pub(in crate::study) simulator: Simulator,
     pub(super) domain: ParameterBox,
     pub(super) interruption: Interruption<'a>,
@@ -38,11 +38,11 @@ fn every(numbers: usize) -> usize {
     numbers.div_ceil(TUNING.most_numbers).max(1)
 }
 
-impl<'a> Rows<'a> {
+impl<'a> MotionRows<'a> {
     /// Asks something, until it is interrupted.
     pub(super) fn asking(
         description: &Description,
-        asked: Asked,
+        asked: DrawingOutputs,
         interruption: Interruption<'a>,
     ) -> Result<Self, RunError> {
         // Responses are between outputs that are not asked here.
@@ -67,7 +67,7 @@ impl<'a> Rows<'a> {
         description: &Description,
         wanted: &[Sample],
         numbers: usize,
-        keep: impl FnMut(usize, bool, Values),
+        keep: impl FnMut(usize, bool, DrawingValues),
     ) -> Result<(Vec<f64>, Vec<Option<usize>>), RunError> {
         let can = self.simulator.can_assemble(wanted);
         let running: Vec<usize> = (0..wanted.len()).filter(|&sample| sample == 0 || can[sample]).collect();
@@ -88,7 +88,7 @@ impl<'a> Rows<'a> {
         description: &Description,
         run: Running,
         stopped: &mut [Option<usize>],
-        mut keep: impl FnMut(usize, bool, Values),
+        mut keep: impl FnMut(usize, bool, DrawingValues),
     ) -> Result<Vec<f64>, RunError> {
         let Running { running, samples, numbers } = run;
         let plan = self.plan(description, samples)?;
@@ -116,7 +116,7 @@ impl<'a> Rows<'a> {
                 times.push(schedule.time(row));
                 for (index, &sample) in running.iter().enumerate() {
                     let own: Vec<f64> = (0..outputs).map(|output| of_row[output * samples.len() + index]).collect();
-                    keep(sample, row == 0, Values(own));
+                    keep(sample, row == 0, DrawingValues(own));
                 }
             }
             next = block.end;
@@ -130,7 +130,7 @@ impl<'a> Rows<'a> {
         description: &Description,
         run: Running,
         stopped: &mut [Option<usize>],
-        mut keep: impl FnMut(usize, bool, Values),
+        mut keep: impl FnMut(usize, bool, DrawingValues),
     ) -> Result<Vec<f64>, RunError> {
         let Running { running, samples, numbers } = run;
         let (duration, output_step) = (description.simulation.duration, description.simulation.output_step);
@@ -158,7 +158,7 @@ impl<'a> Rows<'a> {
             };
             stopped[sample] = visit.stop.map(|stop| stop.row.div_ceil(every));
             for (row, values) in visit.values.chunks_exact(outputs).step_by(every).enumerate() {
-                keep(sample, row == 0, Values(values.to_vec()));
+                keep(sample, row == 0, DrawingValues(values.to_vec()));
             }
         }
         let reached = stopped[0].unwrap_or(times.len());

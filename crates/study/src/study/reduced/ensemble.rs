@@ -12,7 +12,7 @@ use symdiff::taylor_model::ModelSpace;
 
 use super::plan::ReductionPlan;
 use super::tuning::TUNING;
-use super::values::Values;
+use super::values::ChannelValues;
 use crate::methods::{
     self, EnclosedRow, EnclosureEnd, Ensemble, EnsembleError, FollowedEnds, Observed, Proof, Sampling, Simulated, Until,
 };
@@ -20,13 +20,13 @@ use crate::numerics::{CutMotions, Ledger, ParameterBox, Range, Sample};
 use crate::simulate::Schedule;
 
 /// A schedule: number of its steps, its longest one's bits, and how many are taken for each.
-pub type Steps = (usize, u64, usize);
+pub type StepCounts = (usize, u64, usize);
 
 /// Steps, and the bits of a sample's parameters.
-type Key = (Steps, Vec<u64>);
+type Key = (StepCounts, Vec<u64>);
 
 /// The steps of a schedule.
-pub fn steps_of(schedule: &Schedule) -> Steps {
+pub fn steps_of(schedule: &Schedule) -> StepCounts {
     (schedule.steps_before(schedule.rows - 1), schedule.longest_step().to_bits(), schedule.integration.steps())
 }
 
@@ -49,7 +49,7 @@ impl Store {
     }
 
     /// Keeps what samples were reduced to, channel by channel, sample by sample.
-    pub fn keep(&self, steps: Steps, samples: &[Sample], values: &[f64]) {
+    pub fn keep(&self, steps: StepCounts, samples: &[Sample], values: &[f64]) {
         // Stored values are whole, whoever panicked.
         let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
         for (index, sample) in samples.iter().enumerate() {
@@ -61,12 +61,12 @@ impl Store {
     }
 
     /// What a sample was reduced to.
-    pub fn get(&self, steps: Steps, sample: &Sample) -> Option<Vec<f64>> {
+    pub fn get(&self, steps: StepCounts, sample: &Sample) -> Option<Vec<f64>> {
         self.kept.lock().unwrap_or_else(PoisonError::into_inner).get(&(steps, bits(sample))).cloned()
     }
 
     /// All samples of a schedule, in an order that does not depend on that of their simulations.
-    pub fn samples(&self, steps: Steps) -> Vec<(Sample, Vec<f64>)> {
+    pub fn samples(&self, steps: StepCounts) -> Vec<(Sample, Vec<f64>)> {
         let kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
         let of = |((own, sample), channels): (&Key, &Vec<f64>)| {
             (*own == steps).then(|| (sample.iter().map(|&bits| f64::from_bits(bits)).collect(), channels.clone()))
@@ -79,7 +79,7 @@ impl Store {
 pub struct ReducedEnsemble<'a> {
     motions: &'a dyn Ensemble,
     store: &'a Store,
-    steps: Steps,
+    steps: StepCounts,
     scales: Vec<f64>,
     /// Values of all samples of the box that reached the end.
     seen: Ledger,
@@ -247,7 +247,7 @@ impl Ensemble for ReducedEnsemble<'_> {
 
 /// Values from channels.
 pub(super) struct Composition<'a> {
-    pub values: &'a Values,
+    pub values: &'a ChannelValues,
     pub independent: Vec<usize>,
 }
 

@@ -6,7 +6,7 @@ use crate::study::bounding::Bounded;
 use crate::study::problem::Study;
 
 use super::kept::KeptReduced;
-use super::values::Values;
+use super::values::ChannelValues;
 use crate::methods::Method;
 use crate::numerics::{BandError, Sample, largest, step_error, surrogate_error};
 
@@ -14,7 +14,7 @@ use crate::numerics::{BandError, Sample, largest, step_error, surrogate_error};
 pub fn kept_reduced(
     study: &Study,
     results: &mut Bounded,
-    values: &Arc<Values>,
+    values: &Arc<ChannelValues>,
     unreliable: bool,
 ) -> Option<KeptReduced> {
     if !study.request.keep {

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use super::ensemble::Composition;
 use super::tuning::TUNING;
-use super::values::{Selection, Values};
+use super::values::{ChannelValues, Selection};
 use crate::methods::{Closure, KeptSurrogate};
 use crate::numerics::{BandError, largest};
 
@@ -15,7 +15,7 @@ use crate::numerics::{BandError, largest};
 #[derive(Clone, Debug)]
 pub struct KeptReduced {
     pub(super) surrogate: KeptSurrogate,
-    pub(super) values: Arc<Values>,
+    pub(super) values: Arc<ChannelValues>,
     /// Of the values.
     pub(super) errors: Vec<BandError>,
 }

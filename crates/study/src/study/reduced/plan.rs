@@ -8,7 +8,7 @@
 use std::sync::Arc;
 
 use super::tuning::TUNING;
-use super::values::{Humps, Value, Values};
+use super::values::{ChannelValues, Humps, Value};
 use crate::assemble::NumberFormulas;
 use crate::model::{Description, ReducedKind, ReducedOutput, Requirement};
 use crate::simulate::{Accumulation, Channel};
@@ -21,7 +21,7 @@ pub struct ReductionPlan {
     /// Number of those that the surrogate expands.
     pub expanded: usize,
     /// Reduced outputs and margins.
-    pub values: Arc<Values>,
+    pub values: Arc<ChannelValues>,
     /// For each requirement over the time, the channels that say when each slack is least, and how much it is then.
     whens: Vec<Vec<(usize, usize)>>,
 }
@@ -57,7 +57,7 @@ impl ReductionPlan {
             _ => Vec::new(),
         };
         let whens = description.requirements.iter().map(when).collect();
-        let values = Arc::new(Values { all, margins });
+        let values = Arc::new(ChannelValues { all, margins });
         Self { channels: planner.channels, expanded, values, whens }
     }
 

@@ -6,7 +6,7 @@ use crate::assemble::NumberFormulas;
 
 /// Values that follow from channels.
 #[derive(Clone, Debug, Default)]
-pub struct Values {
+pub struct ChannelValues {
     /// Reduced outputs, then parts of the requirements' margins. A value may read reduced outputs before it.
     pub(super) all: Vec<Value>,
     /// For each requirement, which values are parts of its margin: it is the least of them. Each part is bounded alone,
@@ -17,7 +17,7 @@ pub struct Values {
 /// Some of the values, which read some of the channels.
 pub struct Selection {
     /// The values, of the selected channels.
-    pub values: Values,
+    pub values: ChannelValues,
     /// Index of each among all values.
     pub of: Vec<usize>,
     /// Index of each selected channel among all channels, ascending.
@@ -25,7 +25,7 @@ pub struct Selection {
 }
 
 /// Derivatives of a value.
-pub struct Slope {
+pub struct ValueSlope {
     /// By channels, those that count.
     pub by_channels: Vec<(usize, f64)>,
     /// By all parameters; none where they count through channels alone.
@@ -69,7 +69,7 @@ pub(super) enum Value {
     },
 }
 
-impl Values {
+impl ChannelValues {
     /// Number of values.
     pub fn count(&self) -> usize {
         self.all.len()
@@ -117,9 +117,12 @@ impl Values {
     }
 
     /// Derivatives of a value of a motion with these channels, parameters and values.
-    pub fn slope(&self, value: usize, channels: &[f64], parameters: &[f64], values: &[f64]) -> Slope {
+    pub fn slope(&self, value: usize, channels: &[f64], parameters: &[f64], values: &[f64]) -> ValueSlope {
         let Value::Formulas { formulas, reduced } = &self.all[value] else {
-            return Slope { by_channels: self.all[value].slope(channels, values[value]), by_parameters: Vec::new() };
+            return ValueSlope {
+                by_channels: self.all[value].slope(channels, values[value]),
+                by_parameters: Vec::new(),
+            };
         };
         let numbers: Vec<f64> = reduced.iter().map(|&own| values[own]).collect();
         let of_formulas = formulas.values(parameters, &numbers);
@@ -132,7 +135,7 @@ impl Values {
             inner.map(move |(channel, by)| (channel, factor * by))
         };
         let by_channels = reduced.iter().zip(by_numbers).flat_map(of_number).collect();
-        Slope { by_channels, by_parameters: by_parameters.to_vec() }
+        ValueSlope { by_channels, by_parameters: by_parameters.to_vec() }
     }
 
     /// The margins of some requirements alone.
@@ -316,7 +319,7 @@ mod tests {
             Value::Overshoot { greatest: vec![0], least: vec![1], start: 0, target: 3 },
         ];
         let count = all.len();
-        let values = Values { all, margins: Vec::new() };
+        let values = ChannelValues { all, margins: Vec::new() };
         let channels = [0.3, -0.2, 0.1, 0.7, -0.6, 0.9, 0.4];
         let of = |channels: &[f64]| {
             let mut found = Vec::new();
@@ -353,7 +356,7 @@ mod tests {
             Value::Overshoot { greatest: vec![5], least: vec![1], start: 0, target: 3 },
             Value::TimeOf(Humps { heights: vec![1, 2], times: vec![6, 5] }, -1.0),
         ];
-        let values = Values { all, margins: vec![1..3, 3..4, 4..5] };
+        let values = ChannelValues { all, margins: vec![1..3, 3..4, 4..5] };
         let channels = [0.3, -0.2, 0.1, 0.7, -0.6, 0.9, 0.4];
         let mut found = Vec::new();
         values.evaluate(&channels, &[], &mut found);

@@ -13,7 +13,7 @@ use crate::methods::MOST_ON_GRIDS;
 use crate::model::Description;
 use crate::numerics::Sample;
 use crate::numerics::statistics::{Estimate, REPLICATES, beta_quantile};
-use crate::study::sample::{Chosen, sample};
+use crate::study::sample::{ChosenSamples, sample};
 use crate::study::{Options, RunError};
 
 /// Half width of a 95 % confidence interval over the standard error.
@@ -66,7 +66,7 @@ impl Residuals {
         let samples: Vec<Sample> =
             own.chunks_exact(laws.dimension()).map(|own| own.iter().copied().collect()).collect();
         let at = |indices: std::ops::Range<usize>| samples[indices].to_vec();
-        let chosen = Chosen { count: samples.len(), at: &at };
+        let chosen = ChosenSamples { count: samples.len(), at: &at };
         let options = Options { threads: options.threads, interrupted: options.interrupted, ..Options::default() };
         let found = sample(description, &options, chosen, |trajectories| {
             let (rows, columns) = (trajectories.times.len(), trajectories.outputs.len());

@@ -1,6 +1,6 @@
 //! Balance of power along a manufactured motion: of the whole mechanism, and by effect.
 
-use super::motion::{Equations, Manufactured};
+use super::motion::{EquationsAtPoint, Manufactured};
 use super::tuning::TUNING;
 use crate::assemble::System;
 use crate::compile::{OF_EFFECT, OF_WHOLE, compile_equations, observing_powers};
@@ -15,7 +15,7 @@ pub fn balance(
     redundant: &[usize],
 ) -> Option<PowerBalance> {
     let observed = observing_powers(system)?;
-    let mut equations = Equations::new(&observed, compile_equations(&observed), parameters, redundant.to_vec());
+    let mut equations = EquationsAtPoint::new(&observed, compile_equations(&observed), parameters, redundant.to_vec());
     let mut found = PowerBalance::default();
     let effects = system.powers.iter().flat_map(|powers| &powers.effects);
     found.effects.extend(effects.map(|effect| EffectBalance {

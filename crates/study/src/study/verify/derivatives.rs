@@ -9,7 +9,7 @@ use nalgebra::DMatrix;
 use symdiff::jet::JetSpace;
 use symdiff::{Adjoints, DoubleDouble, DoubleDoubleMemory, JetMemory, Tape, Tile};
 
-use super::motion::{Equations, Manufactured};
+use super::motion::{EquationsAtPoint, Manufactured};
 use super::tuning::TUNING;
 use crate::compile::{Entries, EquationsProgram, Layout, Program, Tapes};
 use crate::results::DerivativeCheck;
@@ -71,7 +71,7 @@ struct Scales {
 }
 
 impl Scales {
-    fn new(equations: &Equations, motion: &Manufactured, values: &[f64]) -> Self {
+    fn new(equations: &EquationsAtPoint, motion: &Manufactured, values: &[f64]) -> Self {
         let layout = &equations.program().layout;
         let mut of: Vec<f64> = values.iter().map(|value| value.abs()).collect();
         let rate = 1.0 / motion.length();
@@ -117,7 +117,11 @@ fn compare(checks: &mut Vec<DerivativeCheck>, of: &str, by: &str, sizes: &[f64],
 }
 
 /// Compares all derivatives along a motion.
-pub fn derivatives(simulator: &Simulator, equations: &mut Equations, motion: &Manufactured) -> Vec<DerivativeCheck> {
+pub fn derivatives(
+    simulator: &Simulator,
+    equations: &mut EquationsAtPoint,
+    motion: &Manufactured,
+) -> Vec<DerivativeCheck> {
     let mut checks = Vec::new();
     for share in TUNING.instants_of_derivatives {
         let values = equations.registers(motion, motion.begin + share * motion.length());

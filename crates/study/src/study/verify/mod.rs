@@ -35,7 +35,7 @@ use balance::balance;
 use derivatives::derivatives;
 use fit::Nominal;
 use loaded::{loaded, observed};
-use motion::{Equations, Manufactured};
+use motion::{EquationsAtPoint, Manufactured};
 use orders::convergence;
 use tuning::TUNING;
 use windows::later;
@@ -150,7 +150,7 @@ fn of_formulation(
     let parameters: Sample = system.parameters.iter().map(|parameter| parameter.nominal).collect();
     let nominal = nominal_motion(description, simulator, &parameters).map_err(RunError::from)?;
     let redundant: Vec<usize> = mobility.redundant.iter().map(|constraint| constraint.number()).collect();
-    let mut equations = Equations::new(system, compile_equations(system), &parameters, redundant);
+    let mut equations = EquationsAtPoint::new(system, compile_equations(system), &parameters, redundant);
     let whole = nominal.times.last().copied().unwrap_or(0.0);
     let first = Manufactured::near(&nominal, &mut equations, [0.0, whole], TUNING.halvings_of_motion);
     let reached = first.as_ref().map_or(0.0, |motion| motion.end);
@@ -170,7 +170,7 @@ fn of_formulation(
 fn along(
     description: &Description,
     simulator: &Simulator,
-    equations: &mut Equations,
+    equations: &mut EquationsAtPoint,
     mut motion: Manufactured,
     found: &FormulationVerification,
     options: &Options,

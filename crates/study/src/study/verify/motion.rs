@@ -38,7 +38,7 @@ pub struct Manufactured {
 }
 
 /// The equations at one point.
-pub struct Equations<'s> {
+pub struct EquationsAtPoint<'s> {
     system: &'s System,
     program: EquationsProgram,
     tile: Tile,
@@ -47,7 +47,7 @@ pub struct Equations<'s> {
     kept: Vec<usize>,
 }
 
-impl<'s> Equations<'s> {
+impl<'s> EquationsAtPoint<'s> {
     /// Of a system with these parameters, of whose constraints those by the numbers `redundant` follow from others.
     pub fn new(system: &'s System, program: EquationsProgram, parameters: &[f64], redundant: Vec<usize>) -> Self {
         let mut tile = Tile::new(1, program.registers(), program.constants());
@@ -213,7 +213,7 @@ impl Manufactured {
     /// Where no part of it has a smooth motion on the constraints, or its equations are not smooth along it.
     pub fn near(
         nominal: &Nominal,
-        equations: &mut Equations,
+        equations: &mut EquationsAtPoint,
         [begin, whole]: [f64; 2],
         halvings: usize,
     ) -> Result<Self, NotVerified> {
@@ -233,7 +233,7 @@ impl Manufactured {
     }
 
     /// A motion near the same polynomials over the first part of the time; `None` where there is none.
-    pub fn shortened(&self, share: f64, equations: &mut Equations) -> Option<Self> {
+    pub fn shortened(&self, share: f64, equations: &mut EquationsAtPoint) -> Option<Self> {
         Self::of_fit(self.fit.clone(), [self.begin, self.begin + share * self.length()], equations).ok()
     }
 
@@ -243,7 +243,11 @@ impl Manufactured {
     }
 
     /// From polynomials for q, v and λ.
-    fn of_fit(fit: Vec<ChebyshevSeries>, span: [f64; 2], equations: &mut Equations) -> Result<Self, NotVerified> {
+    fn of_fit(
+        fit: Vec<ChebyshevSeries>,
+        span: [f64; 2],
+        equations: &mut EquationsAtPoint,
+    ) -> Result<Self, NotVerified> {
         let n = equations.system.q.len();
         let [begin, end] = span;
         let coordinates = &equations.system.coordinates;

@@ -1,12 +1,12 @@
 //! Parts of a run between the instants at which its equations switch.
 
 use super::fit::Nominal;
-use super::motion::{Equations, Manufactured};
+use super::motion::{EquationsAtPoint, Manufactured};
 use super::tuning::TUNING;
 
 /// The parts between the instants at which conditions change their sign, without the first one; where none does, none,
 /// or equal parts of the run where its begin has no smooth motion.
-fn parts(nominal: &Nominal, equations: &mut Equations, begins: bool) -> Vec<[f64; 2]> {
+fn parts(nominal: &Nominal, equations: &mut EquationsAtPoint, begins: bool) -> Vec<[f64; 2]> {
     let signs: Vec<Vec<bool>> = (0..nominal.times.len()).map(|row| equations.conditions(nominal, row)).collect();
     let switches = (1..signs.len()).filter(|&row| signs[row] != signs[row - 1]);
     let last = nominal.times.len().saturating_sub(1);
@@ -26,7 +26,7 @@ fn parts(nominal: &Nominal, equations: &mut Equations, begins: bool) -> Vec<[f64
 }
 
 /// A motion on a part after the time `reached`, behind what switches; `None` where there is no smooth one.
-pub fn later(nominal: &Nominal, equations: &mut Equations, reached: f64) -> Option<Manufactured> {
+pub fn later(nominal: &Nominal, equations: &mut EquationsAtPoint, reached: f64) -> Option<Manufactured> {
     let parts = parts(nominal, equations, reached > 0.0)
         .into_iter()
         .filter(|[begin, _]| *begin >= reached)

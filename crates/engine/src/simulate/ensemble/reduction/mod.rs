@@ -73,7 +73,7 @@ impl State {
 
 /// Accumulates the channels of a tile's lanes.
 #[derive(Debug)]
-pub(in crate::simulate) struct Reduction<'s> {
+pub(in crate::simulate) struct Accumulator<'s> {
     channels: &'s [Channel],
     outputs: usize,
     width: usize,
@@ -88,7 +88,7 @@ pub(in crate::simulate) struct Reduction<'s> {
     stopped: Vec<bool>,
 }
 
-impl<'s> Reduction<'s> {
+impl<'s> Accumulator<'s> {
     /// For a tile of so many lanes, with so many outputs.
     pub fn new(channels: &'s [Channel], outputs: usize, width: usize) -> Self {
         let states = vec![State::new(); channels.len() * width];
@@ -239,7 +239,7 @@ mod tests {
 
     fn reduced(accumulation: Accumulation, from: f64, to: f64, f: impl Fn(f64) -> f64) -> f64 {
         let channels = [Channel { output: 0, accumulation, from, to }];
-        let mut reduction = Reduction::new(&channels, 1, 1);
+        let mut reduction = Accumulator::new(&channels, 1, 1);
         for step in 0..=63 {
             let time = 0.1 * f64::from(step);
             let mut values = reduction.buffer();
@@ -277,7 +277,7 @@ mod tests {
     #[test]
     fn few_steps_and_stopped_lanes() {
         let channels = [Channel { output: 0, accumulation: Accumulation::Greatest, from: 0.0, to: f64::INFINITY }];
-        let mut reduction = Reduction::new(&channels, 1, 2);
+        let mut reduction = Accumulator::new(&channels, 1, 2);
         reduction.push(0.0, vec![1.0, 1.0], &[true, true]);
         reduction.push(0.5, vec![3.0, 9.0], &[true, false]);
         let found = reduction.finish();

@@ -6,7 +6,7 @@ use super::tuning::TUNING;
 use crate::numerics::bisected;
 
 /// A place in a piece, as a share of its length, and the value there.
-pub(super) type Place = (f64, f64);
+pub(super) type PiecePoint = (f64, f64);
 
 /// The values between two steps.
 #[derive(Clone, Copy, Debug)]
@@ -20,7 +20,7 @@ pub(super) struct Piece {
     /// Coefficients of the powers of the share of the length.
     cubic: [f64; 4],
     /// The highest and the lowest place between the ends, where they are above or below both.
-    peaks: [Option<Place>; 2],
+    peaks: [Option<PiecePoint>; 2],
 }
 
 impl Piece {
@@ -63,11 +63,11 @@ impl Piece {
     }
 
     /// The greatest value of a part times `sign`, and where; of equals the first.
-    pub fn greatest(&self, part: &Range<f64>, sign: f64) -> Place {
+    pub fn greatest(&self, part: &Range<f64>, sign: f64) -> PiecePoint {
         let inside = self.peaks[usize::from(sign < 0.0)].filter(|(share, _)| part.contains(share));
         let [begin, end] = [part.start, part.end];
         let places = [Some((begin, self.at(begin))), inside, Some((end, self.at(end)))];
-        let larger = |a: Place, b: Place| if sign * b.1 > sign * a.1 { b } else { a };
+        let larger = |a: PiecePoint, b: PiecePoint| if sign * b.1 > sign * a.1 { b } else { a };
         places.into_iter().flatten().reduce(larger).unwrap_or((begin, f64::NAN))
     }
 
@@ -110,7 +110,7 @@ impl Piece {
     }
 
     /// The highest place of the cubic times `sign`, where it and both parabolas rise above the ends.
-    fn peak(&self, sign: f64, parabolas: &[[f64; 4]]) -> Option<Place> {
+    fn peak(&self, sign: f64, parabolas: &[[f64; 4]]) -> Option<PiecePoint> {
         let ends = (sign * self.ends[0]).max(sign * self.ends[1]);
         let rise = |polynomial: &[f64; 4]| {
             let top = stationary(polynomial).into_iter().flatten().filter(|share| *share > 0.0 && *share < 1.0);

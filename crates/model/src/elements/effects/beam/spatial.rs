@@ -48,7 +48,7 @@ pub(super) struct SpatialBeam<'g> {
 }
 
 /// What an element measures.
-pub(super) struct Measured<'g> {
+pub(super) struct MeasuredBeam<'g> {
     /// ℓ, m
     pub length: Scalar<'g>,
     /// N, N
@@ -118,7 +118,7 @@ impl<'g> Middle<'g> {
 
 impl<'g> SpatialBeam<'g> {
     /// Adds its forces and its potential between two frames.
-    pub fn apply(&self, forces: &mut dyn Forces<'g>, between: [PointRef; 2]) -> Measured<'g> {
+    pub fn apply(&self, forces: &mut dyn Forces<'g>, between: [PointRef; 2]) -> MeasuredBeam<'g> {
         let middle = Middle::of(forces, between);
         let (offset, growth) = (middle.offset, middle.growth);
         let length = offset.norm();
@@ -157,7 +157,7 @@ impl<'g> SpatialBeam<'g> {
         let given: Vec<_> = [self.axial, self.torsional, y, z, self.length].into_iter().chain(self.shear).collect();
         forces.potential(&given, 0.5 * (self.axial / self.length * (stretch * stretch) + self.doubled_energy(&shape)));
         let felt_at = |frame: Frame<'g>, torque| frame.orientation.matrix().transposed() * torque;
-        Measured { length, tension, moments: [felt_at(first, torques[0]), -felt_at(second, torques[1])] }
+        MeasuredBeam { length, tension, moments: [felt_at(first, torques[0]), -felt_at(second, torques[1])] }
     }
 
     /// The bilinear form of which e has the square: b_y c_y² + b_z c_z² + L (ψ_y² + ψ_z²)/24.

@@ -28,13 +28,13 @@ use crate::elements::tuning::TUNING;
 
 /// A cylinder of the second body.
 #[derive(Clone, Copy, Debug)]
-pub struct Cylinder<'g> {
+pub struct ContactCylinder<'g> {
     pub axis: Rod<'g>,
     /// r, m
     pub radius: Scalar<'g>,
 }
 
-impl<'g> Cylinder<'g> {
+impl<'g> ContactCylinder<'g> {
     /// Where it touches a ball of radius ρ about p: in c.
     pub fn touch(&self, pair: &Pair<'g>, ball: Vector<'g>, reach: Scalar<'g>) -> Touch<'g> {
         let g = reach.builder();
@@ -129,7 +129,7 @@ struct Beside<'g> {
 }
 
 impl<'g> Beside<'g> {
-    fn of(cylinder: &Cylinder<'g>, pair: &Pair<'g>, (from, tangent, length): Segment<'g>, reach: Scalar<'g>) -> Self {
+    fn of(cylinder: &ContactCylinder<'g>, pair: &Pair<'g>, (from, tangent, length): Segment<'g>, reach: Scalar<'g>) -> Self {
         let (start, along) = cylinder.axis.outward(pair);
         let height = cylinder.axis.length;
         let zero = length.builder().number(0.0);

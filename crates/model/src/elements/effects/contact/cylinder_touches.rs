@@ -10,32 +10,32 @@
 //!
 //! A face that touches meets a rim: the distances of all of these have the least distance of both bodies among them.
 
-use super::cylinder::Cylinder;
+use super::cylinder::ContactCylinder;
 use super::facets::Facets;
 use super::solid::Solid;
-use super::touch::{Shape, Surface, Touch};
+use super::touch::{WholeSurface, ContactSurface, Touch};
 use crate::multibody::{Pair, Vector};
 
 /// All places where they may touch.
-pub fn touches<'g>(surface: &Surface<'g>, cylinder: &Cylinder<'g>, pair: &Pair<'g>) -> Vec<Touch<'g>> {
-    let Surface::Whole(shape) = surface else { return Vec::new() };
+pub fn touches<'g>(surface: &ContactSurface<'g>, cylinder: &ContactCylinder<'g>, pair: &Pair<'g>) -> Vec<Touch<'g>> {
+    let ContactSurface::Whole(shape) = surface else { return Vec::new() };
     let point = cylinder.radius.builder().number(0.0);
     let on_rims =
         |normal: Vector<'g>| cylinder.rims(pair, normal).into_iter().map(|place| shape.touch(pair, place, point, None));
     let origin = pair.first.point.position;
     let (facets, reach) = match *shape {
-        Shape::Plane(normal) => return on_rims(pair.outward(normal)).collect(),
-        Shape::Round(outer) => {
+        WholeSurface::Plane(normal) => return on_rims(pair.outward(normal)).collect(),
+        WholeSurface::Round(outer) => {
             let near = cylinder.axis.is_near(pair, point, outer + cylinder.radius);
             return vec![cylinder.touch(pair, origin, outer).only_within(Some(near))];
         }
-        Shape::Solid(Solid::Capsule { start, tangent, length }, reach) => {
+        WholeSurface::Solid(Solid::Capsule { start, tangent, length }, reach) => {
             let line = (origin + pair.outward(start), pair.outward(tangent), length);
             return vec![cylinder.touch(pair, cylinder.nearest_on(pair, line, reach), reach)];
         }
-        Shape::Solid(Solid::Block { half: [Some(x), Some(y), Some(z)] }, reach) => (Facets::of_block([x, y, z]), reach),
-        Shape::Hull(ref hull, reach) => (Facets::of_hull(hull, reach.builder()), reach),
-        Shape::Solid(..) | Shape::Hollow(_) | Shape::Ground(_) => return Vec::new(),
+        WholeSurface::Solid(Solid::Block { half: [Some(x), Some(y), Some(z)] }, reach) => (Facets::of_block([x, y, z]), reach),
+        WholeSurface::Hull(ref hull, reach) => (Facets::of_hull(hull, reach.builder()), reach),
+        WholeSurface::Solid(..) | WholeSurface::Hollow(_) | WholeSurface::Ground(_) => return Vec::new(),
     };
     let lowest = |normal: Vector<'g>| {
         let normal = pair.outward(normal);

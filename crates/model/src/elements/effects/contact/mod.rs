@@ -44,16 +44,16 @@ use mbint_derive::Element;
 use symdiff::{Formula, Scalar};
 
 use self::course::{ContactLine, Points, placed};
-use self::cylinder::Cylinder;
+use self::cylinder::ContactCylinder;
 use self::felt::{Felt, SENSORS};
 use self::ground::Ground;
 use self::hull::{Hull};
 use super::laws::impact::Push;
-use self::outline::Outline;
+use self::outline::ContactEdges;
 use self::polyhedron::{Polyhedron};
 use self::rod::{Rod};
 use self::solid::{Solid};
-use self::touch::{Law, Surface, Touch};
+use self::touch::{ContactLaw, ContactSurface, Touch};
 use super::{ForceElement, Forces, Friction, FrictionAlong, Impact, TypedSensor};
 use crate::elements::{Shape, SurfaceAt, Surroundings};
 use crate::grammar::{Axis, Checked, Components, Direction, Fields, OfPlace, PointRef, Reader, SymbolTable};
@@ -167,11 +167,11 @@ impl ForceElement for Contact {
             None => None,
         };
         let pair = forces.pair(self.between);
-        let felt: Vec<Felt<'g>> = if let Surface::Edges(outline) = &surface {
+        let felt: Vec<Felt<'g>> = if let ContactSurface::Edges(outline) = &surface {
             let centres = self.corners(forces, &pair)?.into_iter();
             centres.map(|centre| outline.apply(forces, &pair, centre, &impact, friction.as_ref())).collect()
         } else {
-            let law = Law { impact, friction, along };
+            let law = ContactLaw { impact, friction, along };
             let touches = self.touches(forces, &surface, radius, &pair)?.into_iter();
             touches.map(|touch| law.act(forces, &pair, touch)).collect()
         };
@@ -196,38 +196,38 @@ impl Contact {
     fn deepest<'g>(
         &self,
         forces: &dyn Forces<'g>,
-        surface: &Surface<'g>,
+        surface: &ContactSurface<'g>,
         radius: Scalar<'g>,
     ) -> Result<Option<Scalar<'g>>, BuildError> {
         let deepest = match surface {
-            Surface::Edges(_) => forces.prescribed(&self.rounding)? + radius,
-            Surface::Whole(touch::Shape::Solid(_, reach) | touch::Shape::Hull(_, reach)) => *reach,
-            Surface::Whole(touch::Shape::Round(outer)) => *outer + radius,
-            Surface::Whole(touch::Shape::Plane(_) | touch::Shape::Hollow(_) | touch::Shape::Ground(_)) => return Ok(None),
+            ContactSurface::Edges(_) => forces.prescribed(&self.rounding)? + radius,
+            ContactSurface::Whole(touch::WholeSurface::Solid(_, reach) | touch::WholeSurface::Hull(_, reach)) => *reach,
+            ContactSurface::Whole(touch::WholeSurface::Round(outer)) => *outer + radius,
+            ContactSurface::Whole(touch::WholeSurface::Plane(_) | touch::WholeSurface::Hollow(_) | touch::WholeSurface::Ground(_)) => return Ok(None),
         };
         Ok((!deepest.is_zero()).then_some(deepest))
     }
 
     /// Of the first body.
-    fn surface<'g>(&self, forces: &dyn Forces<'g>, radius: Scalar<'g>) -> Result<Option<Surface<'g>>, BuildError> {
+    fn surface<'g>(&self, forces: &dyn Forces<'g>, radius: Scalar<'g>) -> Result<Option<ContactSurface<'g>>, BuildError> {
         // A cylinder's axis is no line that all of it is about.
         let around = if self.cylinder.is_some() { forces.graph().number(0.0) } else { radius };
         Ok(Some(if let Some(normal) = &self.plane {
-            Surface::Whole(touch::Shape::Plane(direction(forces, normal)?))
+            ContactSurface::Whole(touch::WholeSurface::Plane(direction(forces, normal)?))
         } else if let Some(outer) = &self.circle {
-            Surface::Whole(touch::Shape::Round(forces.prescribed(outer)?))
+            ContactSurface::Whole(touch::WholeSurface::Round(forces.prescribed(outer)?))
         } else if let Some(bore) = &self.hollow {
-            Surface::Whole(touch::Shape::Hollow(forces.prescribed(bore)? - radius))
+            ContactSurface::Whole(touch::WholeSurface::Hollow(forces.prescribed(bore)? - radius))
         } else if let Some(points) = &self.path {
-            Surface::Edges(self.outline(forces, points, false)?)
+            ContactSurface::Edges(self.outline(forces, points, false)?)
         } else if let Some(points) = &self.polygon {
-            Surface::Edges(self.outline(forces, points, true)?)
+            ContactSurface::Edges(self.outline(forces, points, true)?)
         } else if let Some(height) = &self.height {
-            Surface::Whole(touch::Shape::Ground(Ground::of(forces, height, radius)?))
+            ContactSurface::Whole(touch::WholeSurface::Ground(Ground::of(forces, height, radius)?))
         } else if let Some(solid) = self.solid(forces)? {
-            Surface::Whole(touch::Shape::Solid(solid, forces.prescribed(&self.rounding)? + around))
+            ContactSurface::Whole(touch::WholeSurface::Solid(solid, forces.prescribed(&self.rounding)? + around))
         } else if let Some(hull) = hull_of(forces, self.hull.as_ref())? {
-            Surface::Whole(touch::Shape::Hull(hull, forces.prescribed(&self.rounding)? + around))
+            ContactSurface::Whole(touch::WholeSurface::Hull(hull, forces.prescribed(&self.rounding)? + around))
         } else {
             return Ok(None);
         }))
@@ -237,13 +237,13 @@ impl Contact {
     fn touches<'g>(
         &self,
         forces: &dyn Forces<'g>,
-        surface: &Surface<'g>,
+        surface: &ContactSurface<'g>,
         radius: Scalar<'g>,
         pair: &Pair<'g>,
     ) -> Result<Vec<Touch<'g>>, BuildError> {
         if let Some(axis) = self.rod(forces, self.cylinder.as_ref())? {
             let near = surface.is_near(&axis, radius, pair);
-            let touches = cylinder_touches::touches(surface, &Cylinder { axis, radius }, pair).into_iter();
+            let touches = cylinder_touches::touches(surface, &ContactCylinder { axis, radius }, pair).into_iter();
             return Ok(touches.map(|touch| touch.only_within(near)).collect());
         }
         if let Some(lengths) = &self.r#box {
@@ -261,7 +261,7 @@ impl Contact {
             None => self.corners(forces, pair)?,
         };
         let near = line.and_then(|line| surface.is_near(&line, forces.graph().number(0.0), pair));
-        let Surface::Whole(shape) = surface else { return Ok(Vec::new()) };
+        let ContactSurface::Whole(shape) = surface else { return Ok(Vec::new()) };
         Ok(centres.into_iter().map(|centre| shape.touch(pair, centre, radius, axis).only_within(near)).collect())
     }
 
@@ -294,10 +294,10 @@ impl Contact {
         forces: &dyn Forces<'g>,
         course: &ContactLine,
         closed: bool,
-    ) -> Result<Outline<'g>, BuildError> {
+    ) -> Result<ContactEdges<'g>, BuildError> {
         let corners = course.corners(forces)?;
         let (rounding, radius) = (forces.prescribed(&self.rounding)?, forces.prescribed(&self.radius)?);
-        Ok(Outline::through(&corners, closed, rounding, radius))
+        Ok(ContactEdges::through(&corners, closed, rounding, radius))
     }
 }
 

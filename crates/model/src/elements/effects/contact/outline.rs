@@ -24,7 +24,7 @@ use crate::elements::tuning::TUNING;
 
 /// Edges in the x and y of a frame.
 #[derive(Clone, Debug)]
-pub struct Outline<'g> {
+pub struct ContactEdges<'g> {
     edges: Vec<Edge<'g>>,
     /// Whether the last edge ends where the first begins.
     closed: bool,
@@ -71,7 +71,7 @@ struct Sum<'g> {
     energy: Scalar<'g>,
 }
 
-impl<'g> Outline<'g> {
+impl<'g> ContactEdges<'g> {
     /// Through points, and back to the first where it is closed.
     pub fn through(corners: &[Corner<'g>], closed: bool, rounding: Scalar<'g>, radius: Scalar<'g>) -> Self {
         let last = closed.then(|| (corners.last(), corners.first()));

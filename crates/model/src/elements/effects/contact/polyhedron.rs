@@ -21,7 +21,7 @@ use super::facets::Facets;
 use super::hull::{self, Hull};
 use super::rod::Rod;
 use super::solid::Solid;
-use super::touch::{Shape, Surface, Touch};
+use super::touch::{WholeSurface, ContactSurface, Touch};
 use crate::grammar::{Reader, Span, SymbolTable};
 use crate::syntax::codes::Code;
 use crate::multibody::{Pair, Vector};
@@ -57,8 +57,8 @@ impl<'g> Polyhedron<'g> {
     }
 
     /// All places where they may touch.
-    pub fn touches(&self, surface: &Surface<'g>, pair: &Pair<'g>) -> Vec<Touch<'g>> {
-        let Surface::Whole(shape) = surface else { return Vec::new() };
+    pub fn touches(&self, surface: &ContactSurface<'g>, pair: &Pair<'g>) -> Vec<Touch<'g>> {
+        let ContactSurface::Whole(shape) = surface else { return Vec::new() };
         let on_corners = || {
             let corners =
                 self.facets.corners.iter().map(|&corner| pair.second.point.position + pair.outward_of_second(corner));
@@ -67,12 +67,12 @@ impl<'g> Polyhedron<'g> {
         let back = Pair { first: pair.second, second: pair.first };
         let origin = pair.first.point.position;
         let (facets, reach, radius) = match *shape {
-            Shape::Plane(_) | Shape::Hollow(_) => return on_corners(),
-            Shape::Round(outer) => {
+            WholeSurface::Plane(_) | WholeSurface::Hollow(_) => return on_corners(),
+            WholeSurface::Round(outer) => {
                 let touch = self.shape(outer + self.radius).touch(&back, origin, outer, None).reversed();
                 return vec![self.near(touch, outer + self.radius, self.radius.builder().number(0.0), pair)];
             }
-            Shape::Solid(solid @ Solid::Capsule { start, tangent, length }, reach) => {
+            WholeSurface::Solid(solid @ Solid::Capsule { start, tangent, length }, reach) => {
                 let line = Rod::along(start, tangent, length);
                 let nearest = match &self.body {
                     Body::Block(half) => line.nearest_to_block(&back, half.map(Some), reach),
@@ -81,13 +81,13 @@ impl<'g> Polyhedron<'g> {
                 let touch = self.shape(reach).touch(&back, nearest, reach - self.radius, None).reversed();
                 return vec![self.near(touch, reach, solid.radius(reach.builder()), pair)];
             }
-            Shape::Solid(solid @ Solid::Block { half: [Some(x), Some(y), Some(z)] }, reach) => {
+            WholeSurface::Solid(solid @ Solid::Block { half: [Some(x), Some(y), Some(z)] }, reach) => {
                 (Facets::of_block([x, y, z]), reach, solid.radius(reach.builder()))
             }
-            Shape::Hull(ref hull, reach) => {
+            WholeSurface::Hull(ref hull, reach) => {
                 (Facets::of_hull(hull, reach.builder()), reach, reach.builder().number(hull.radius()))
             }
-            Shape::Solid(..) | Shape::Ground(_) => return Vec::new(),
+            WholeSurface::Solid(..) | WholeSurface::Ground(_) => return Vec::new(),
         };
         let mut all = on_corners();
         let body = self.shape(reach);
@@ -98,7 +98,7 @@ impl<'g> Polyhedron<'g> {
                 .map(|&corner| body.touch(&back, origin + pair.outward(corner), reach - self.radius, None).reversed()),
         );
         for &(start, tangent, length) in &facets.edges {
-            let capsule = Shape::Solid(Solid::Capsule { start, tangent, length }, reach);
+            let capsule = WholeSurface::Solid(Solid::Capsule { start, tangent, length }, reach);
             all.extend(self.facets.edges.iter().map(|&(from, along, its_length)| {
                 let centre = Rod::along(from, along, its_length).nearest_to_line(pair, (start, tangent, length));
                 capsule.touch(pair, centre, self.radius, None)
@@ -108,10 +108,10 @@ impl<'g> Polyhedron<'g> {
     }
 
     /// As a surface, for what touches it within a reach.
-    fn shape(&self, reach: Scalar<'g>) -> Shape<'g> {
+    fn shape(&self, reach: Scalar<'g>) -> WholeSurface<'g> {
         match &self.body {
-            Body::Block(half) => Shape::Solid(Solid::Block { half: half.map(Some) }, reach),
-            Body::Hull(hull) => Shape::Hull(hull.clone(), reach),
+            Body::Block(half) => WholeSurface::Solid(Solid::Block { half: half.map(Some) }, reach),
+            Body::Hull(hull) => WholeSurface::Hull(hull.clone(), reach),
         }
     }
 

@@ -12,25 +12,25 @@ use super::felt::Felt;
 use super::ground::Ground;
 use super::hull::Hull;
 use crate::elements::effects::laws::impact::Push;
-use super::outline::Outline;
+use super::outline::ContactEdges;
 use super::rod::Rod;
 use super::solid::{Gap, Solid};
 use crate::multibody::{Pair, Vector};
 use crate::elements::tuning::TUNING;
 
 /// What the first body's surface is made of.
-pub enum Surface<'g> {
-    Whole(Shape<'g>),
-    Edges(Outline<'g>),
+pub enum ContactSurface<'g> {
+    Whole(WholeSurface<'g>),
+    Edges(ContactEdges<'g>),
 }
 
-impl<'g> Surface<'g> {
+impl<'g> ContactSurface<'g> {
     /// Positive where what lies within a radius about a line of the second body may touch a solid; `None` of other
     /// surfaces, which are found at once.
     pub fn is_near(&self, line: &Rod<'g>, radius: Scalar<'g>, pair: &Pair<'g>) -> Option<Scalar<'g>> {
         let (solid, reach) = match self {
-            Self::Whole(Shape::Solid(solid, reach)) => (solid.radius(reach.builder()), *reach),
-            Self::Whole(Shape::Hull(hull, reach)) => (reach.builder().number(hull.radius()), *reach),
+            Self::Whole(WholeSurface::Solid(solid, reach)) => (solid.radius(reach.builder()), *reach),
+            Self::Whole(WholeSurface::Hull(hull, reach)) => (reach.builder().number(hull.radius()), *reach),
             _ => return None,
         };
         Some(line.is_near(pair, solid, reach + radius))
@@ -39,12 +39,12 @@ impl<'g> Surface<'g> {
     /// Centres on a line of the second body that are nearest.
     pub fn centres_on(&self, line: &Rod<'g>, pair: &Pair<'g>) -> Vec<Vector<'g>> {
         match *self {
-            Self::Whole(Shape::Hull(ref hull, _)) => vec![line.nearest_to_hull(pair, hull)],
-            Self::Whole(Shape::Solid(Solid::Capsule { start, tangent, length }, _)) => {
+            Self::Whole(WholeSurface::Hull(ref hull, _)) => vec![line.nearest_to_hull(pair, hull)],
+            Self::Whole(WholeSurface::Solid(Solid::Capsule { start, tangent, length }, _)) => {
                 vec![line.nearest_to_line(pair, (start, tangent, length))]
             }
-            Self::Whole(Shape::Solid(Solid::Block { half }, reach)) => vec![line.nearest_to_block(pair, half, reach)],
-            Self::Whole(Shape::Round(_)) => vec![line.nearest_to_point(pair, pair.first.point.position)],
+            Self::Whole(WholeSurface::Solid(Solid::Block { half }, reach)) => vec![line.nearest_to_block(pair, half, reach)],
+            Self::Whole(WholeSurface::Round(_)) => vec![line.nearest_to_point(pair, pair.first.point.position)],
             _ => line.ends(pair).to_vec(),
         }
     }
@@ -52,7 +52,7 @@ impl<'g> Surface<'g> {
 
 /// The first body's surface, where it is one.
 #[derive(Clone, Debug)]
-pub enum Shape<'g> {
+pub enum WholeSurface<'g> {
     /// A unit normal, in the first frame.
     Plane(Vector<'g>),
     /// R, m
@@ -69,14 +69,14 @@ pub enum Shape<'g> {
 
 /// What two surfaces do to one another.
 #[derive(Clone, Copy, Debug)]
-pub struct Law<'g> {
+pub struct ContactLaw<'g> {
     pub impact: Push<'g>,
     pub friction: Option<Resistance<'g>>,
     /// A unit vector in the first frame and the coefficient of friction along it.
     pub along: Option<(Vector<'g>, Scalar<'g>)>,
 }
 
-impl<'g> Law<'g> {
+impl<'g> ContactLaw<'g> {
     /// Adds the forces at a place; `moving` is the first surface's velocity beyond its body's.
     pub fn act(
         &self,
@@ -153,7 +153,7 @@ impl<'g> Touch<'g> {
     }
 }
 
-impl<'g> Shape<'g> {
+impl<'g> WholeSurface<'g> {
     /// Where it touches a circle, sphere or point of a radius about `centre`, which belongs to the second body. Across
     /// the axis, a unit vector in the first frame, centres are apart.
     pub fn touch(
