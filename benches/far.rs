@@ -7,8 +7,8 @@
 mod paired;
 
 use mbint::inner::model::{Description, load_str};
-use mbint::inner::results::Method;
 use mbint::inner::study::{Options, prepare, run};
+use mbint::results::Method;
 use paired::{Paired, paired};
 
 /// Pairs of runs of each.

@@ -5,8 +5,8 @@
 mod models;
 
 use divan::{Bencher, bench};
-use mbint::inner::results::Method;
 use mbint::inner::study::{Options, run};
+use mbint::results::Method;
 
 fn main() {
     divan::main();

@@ -22,10 +22,7 @@ pub mod elements {
 }
 
 pub mod export {
-    pub use crate::export::{
-        Caption, Swept, SweptBounds, TradeAxis, TradeMark, bounds_csv, effects_page, snapshot_table, sweep_svg,
-        trade_svg, write_cost,
-    };
+    pub use crate::export::{bounds_csv, effects_page, snapshot_table, write_cost};
 }
 
 pub mod methods {
@@ -47,14 +44,6 @@ pub mod reduce {
     pub use crate::reduce::Reduction;
 }
 
-pub mod results {
-    pub use crate::results::{
-        Allocation, Band, Bounds, CostStudy, FunctionWitness, Method, MethodSummary, OutputBounds, OutputStatistics,
-        OutputStatisticsSummary, ReducedBand, ReducedSummary, RequirementSummary, StatisticsResult, Summary, Uncertain,
-        Verdict, YieldSummary,
-    };
-}
-
 pub mod simulate {
     pub use crate::simulate::{
         EnsembleRun, ExplicitJets, ExtrapolatedJets, Gradient, Integration, Integrator, Interruption, JetBox,
@@ -65,8 +54,7 @@ pub mod simulate {
 
 pub mod study {
     pub use crate::study::{
-        AllocateOptions, CostOptions, Evaluator, Kept, Options, allocate, cost, explain, gradient, language_costs,
-        prepare, ready, run, run_keeping,
+        AllocateOptions, Kept, Options, allocate, explain, language_costs, prepare, ready, run, run_keeping,
     };
 }
 

@@ -10,11 +10,11 @@ mod scalar;
 use std::time::Instant;
 
 use mbint::inner::numerics::Sample;
-use mbint::inner::results::Method;
 use mbint::inner::simulate::{
     EnsembleRun, Integrator, JetBox, JetIntegrator, JetRun, Observed, Schedule, Simulator, Steps,
 };
 use mbint::inner::study;
+use mbint::results::Method;
 use models::STEP;
 use serde_json::{Value, json};
 use symdiff::jet::JetSpace;
@@ -169,7 +169,7 @@ fn scan() -> Value {
             };
             study::run(&description, options).expect("the model runs").0
         });
-        let ends = |bounds: &mbint::inner::results::Bounds| {
+        let ends = |bounds: &mbint::results::Bounds| {
             let bands = bounds.outputs.iter().flat_map(|output| &output.bands);
             bands.flat_map(|band| band.lower.iter().chain(&band.upper)).map(|end| end.to_bits()).collect::<Vec<_>>()
         };

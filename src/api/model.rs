@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::{Axis, Error, Study, Sweep};
 use crate::model::{Description, Override, ParameterValue, Reading, read_rooted, read_str};
-use crate::results::{Gradients, Verification};
+use crate::results::{Explanation, Gradients, Verification};
 use crate::study::{self, Options};
 use crate::syntax::Diagnostics;
 
@@ -116,6 +116,23 @@ impl Model {
     /// Warnings: the model can be used, but something in it is probably not meant.
     pub fn warnings(&self) -> &Diagnostics {
         &self.warnings
+    }
+
+    /// Builds and assembles the model, and fits its methods: all that a run does before it simulates.
+    ///
+    /// # Errors
+    /// [`Error::Run`]: why a run would not begin.
+    pub fn check(&self) -> Result<(), Error> {
+        study::ready(&self.description)?;
+        Ok(())
+    }
+
+    /// What the model is compiled to: coordinates, instructions of a step, costs of effects, and the reasons.
+    ///
+    /// # Errors
+    /// [`Error::Run`]: it cannot be built or assembled, or a program answers in place of a mechanism.
+    pub fn explain(&self) -> Result<Explanation, Error> {
+        Ok(study::explain(&self.description)?)
     }
 
     /// A study of the model, with the methods that its `bounds:` ask for until others are chosen.

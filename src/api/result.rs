@@ -90,8 +90,7 @@ impl StudyResult {
         Ok(export::write_results(folder.as_ref(), &self.bounds, &self.summary, &Provenance::default(), false, None)?)
     }
 
-    /// The data behind the outputs.
-    #[doc(hidden)]
+    /// The data behind the outputs: what `bounds.csv` has, with all parts of the errors, in SI units.
     pub fn bounds(&self) -> &Bounds {
         &self.bounds
     }

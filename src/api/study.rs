@@ -48,6 +48,15 @@ impl<'a> Study<'a> {
         self
     }
 
+    /// The nominal motion without the model's bounds and statistics; methods that are chosen run beside it.
+    #[must_use]
+    pub fn nominal(mut self) -> Self {
+        self.choose();
+        // Statistics are evaluated on a surrogate, which is a bounding method's.
+        self.description.statistics.asked = false;
+        self
+    }
+
     /// The smallest and largest values on a grid with so many points a parameter: points^k simulations, always too
     /// narrow.
     #[must_use]

@@ -23,13 +23,13 @@ pub(super) struct Given {
 
 /// The models that could be read.
 pub(super) struct Loaded {
-    pub models: Vec<Model>,
+    pub models: Vec<LoadedModel>,
     /// Whether these are all: reading may fail by an error of this program.
     pub is_complete: bool,
 }
 
 /// A model to be run, alone or as scenes.
-pub(super) struct Model {
+pub(super) struct LoadedModel {
     /// Its file.
     pub path: PathBuf,
     /// Its name, which is also that of its folder.
@@ -74,7 +74,7 @@ pub(super) fn load_all(
         let scenes = reading
             .chosen(scenes)
             .map_err(|error| Failure::wrong(format!("{}: {error}", model::shown(path))).of(&error))?;
-        Ok(Model { path: path.clone(), name, scenes, all, files, texts: texts.into() })
+        Ok(LoadedModel { path: path.clone(), name, scenes, all, files, texts: texts.into() })
     };
     let readings = readings.into_iter().map(|(path, reading)| Some((path, reading?)));
     let Some(readings) = readings.collect::<Option<Vec<_>>>() else { return Ok(None) };

@@ -128,11 +128,11 @@ pub(super) fn with_folder(
 }
 
 /// Gives every model a folder of its own.
-fn work(models: Vec<load::Model>, request: &Request) -> Result<Vec<Work>, Failure> {
+fn work(models: Vec<load::LoadedModel>, request: &Request) -> Result<Vec<Work>, Failure> {
     let several = request.models.len() > 1;
     let mut taken: HashMap<String, PathBuf> = HashMap::new();
     let mut work = Vec::new();
-    for (number, load::Model { path, name, scenes, all, files, texts }) in models.into_iter().enumerate() {
+    for (number, load::LoadedModel { path, name, scenes, all, files, texts }) in models.into_iter().enumerate() {
         let stem = file_stem(&name);
         // Some systems do not distinguish upper and lower case.
         if let Some(other) = taken.insert(stem.to_lowercase(), path.clone()) {

@@ -45,10 +45,10 @@ pub(super) fn snapshot(args: SnapshotArgs, console: &mut Console) -> Result<Stat
 }
 
 /// Gives every model and scene a file of its own.
-fn jobs(models: Vec<load::Model>, args: &SnapshotArgs) -> Result<Vec<Job>, Failure> {
+fn jobs(models: Vec<load::LoadedModel>, args: &SnapshotArgs) -> Result<Vec<Job>, Failure> {
     let mut taken: HashMap<PathBuf, PathBuf> = HashMap::new();
     let mut jobs = Vec::new();
-    for load::Model { path, scenes, .. } in models {
+    for load::LoadedModel { path, scenes, .. } in models {
         let beside = path.parent().unwrap_or(Path::new(""));
         let folder = args.output.clone().unwrap_or_else(|| beside.to_owned());
         for (_, model) in scenes {

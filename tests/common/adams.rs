@@ -3,7 +3,7 @@
 //! m = 1 kg, inertia (0.04, 0.1, 0.1) about the world's axes, g = 9.80665 in −z, from rest, rows 0.01 s apart over 5 s.
 //! Adams gives the reaction on the ground; mbint's is on the second body, here the moving one.
 
-use mbint::inner::results::Bounds;
+use mbint::results::Bounds;
 
 use super::{Findings, Vary, curve, largest, measured, nominal, read, row, rows, third_party};
 

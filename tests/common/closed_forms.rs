@@ -1,7 +1,7 @@
 //! Assertions that an output has a closed form.
 
 use mbint::inner::model::Description;
-use mbint::inner::results::Bounds;
+use mbint::results::Bounds;
 
 use super::{Vary, curve, distance_from, nominal, order, richardson};
 

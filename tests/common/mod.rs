@@ -17,9 +17,9 @@ use std::path::{Path, PathBuf};
 use mbint::inner::methods::{Chebyshev, Expand, Scan};
 use mbint::inner::model::{self, Description, Output, ParameterValue, SchemeChoice, Stepping};
 use mbint::inner::numerics::RangeKind;
-use mbint::inner::results::Summary;
-use mbint::inner::results::{Band, Bounds, Method, OutputBounds};
 use mbint::inner::study::{self, Options};
+use mbint::results::{Band, Bounds, Method, OutputBounds, Summary};
+use mbint::{Model, Study};
 
 /// The files of `models/`, in alphabetical order.
 pub fn model_files() -> Vec<PathBuf> {
@@ -60,6 +60,31 @@ pub fn load_all(path: &Path) -> Vec<Description> {
 #[track_caller]
 pub fn read(text: &str) -> Description {
     model::load_str("test", text, &[]).unwrap_or_else(|diagnostics| panic!("{diagnostics}"))
+}
+
+/// A model from text, as users of the library have it.
+#[track_caller]
+pub fn model_of(text: &str) -> Model {
+    Model::from_yaml_str("test", text).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// A study of a model from text, as users of the library ask for one.
+#[track_caller]
+pub fn study_of(text: &str) -> Study<'static> {
+    model_of(text).study()
+}
+
+/// Bounds and summary of a study that can be run, whether or not it reaches the end.
+#[track_caller]
+pub fn ran(study: Study<'_>) -> (Bounds, Summary) {
+    let result = study.threads(2).run().unwrap_or_else(|error| panic!("{error}"));
+    (result.bounds().clone(), result.summary().clone())
+}
+
+/// Why a study of a model from text cannot be run.
+#[track_caller]
+pub fn refused(text: &str) -> String {
+    study_of(text).run().expect_err("it cannot be run").to_string()
 }
 
 /// Runs what the model asks for; nothing may fail.

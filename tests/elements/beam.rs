@@ -1,7 +1,7 @@
 //! Beams against the textbook: deflections, the elastica, and natural frequencies.
 
 use mbint::inner::model::Description;
-use mbint::inner::results::Bounds;
+use mbint::results::Bounds;
 
 use crate::common::power::{APART, assert_balance, pair};
 use crate::common::{curve, nominal, order, read};

@@ -2,7 +2,7 @@
 
 use crate::common::{curve, distance_from, nominal, read};
 
-use mbint::inner::results::Bounds;
+use mbint::results::Bounds;
 
 /// Mass of the follower, kg; base radius, m; speed of the cam, rad/s; weight, m/s².
 const MASS: f64 = 2.0;

@@ -1,11 +1,10 @@
 //! A slider crank whose wrist pin is loose by 0.1 mm: stable, convergent, and within its clearance of the ideal one.
 
 use mbint::inner::model::Description;
-use mbint::inner::results::Method;
-use mbint::inner::study::{self, Options};
+use mbint::results::Method;
 
 use crate::common::power::{APART, assert_balance, pair};
-use crate::common::{Vary, band, curve, distance, largest, nominal, output, read, row, run};
+use crate::common::{Vary, band, curve, distance, largest, nominal, output, read, row, run, study_of};
 
 /// `wrist` is the joint or the effect between rod and slider; it starts centred, with the ideal mechanism's velocities.
 fn slider_crank(joint: &str, effect: &str, start: &str) -> Description {
@@ -122,7 +121,7 @@ fn an_elastic_bearing_stores_what_it_takes() {
 #[test]
 fn a_journal_outside_of_its_bearing_is_refused() {
     let begins = |x: &str| {
-        let description = read(&format!(
+        study_of(&format!(
             "
 bodies: {{ rod: {{ mass: 1, inertia: 0.1, points: {{ A: [35 mm, 0] }} }} }}
 effects:
@@ -131,8 +130,7 @@ initial: {{ rod.x: {x}, rod.y: 0, rod.angle: 0 }}
 outputs: {{ x: rod.x }}
 simulation: {{ duration: 1e-3, step: 1e-4 }}
 "
-        ));
-        study::run(&description, Options::default())
+        )).run()
     };
     assert!(begins("-35.05 mm").is_ok(), "the journal is in its bearing");
     let message = begins("0").expect_err("it is outside").to_string();

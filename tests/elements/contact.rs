@@ -4,7 +4,7 @@ use crate::common::power::{APART, assert_balance, pair};
 use crate::common::{Vary, curve, distance_from, largest, nominal, order, read, row};
 use crate::common::restitution::restitution;
 use mbint::inner::model::Description;
-use mbint::inner::results::Bounds;
+use mbint::results::Bounds;
 
 fn ball(impact: &str) -> Description {
     read(&format!(

@@ -1,6 +1,6 @@
 //! Outlines with arcs, against circles, bores and capsules, and their images.
 
-use mbint::inner::results::Bounds;
+use mbint::results::Bounds;
 
 use crate::common::{curve, distance, largest, nominal, read};
 

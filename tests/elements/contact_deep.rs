@@ -1,7 +1,7 @@
 //! Contacts that become too deep, and surfaces that pass through one another within a step: the run says so, and flags
 //! what follows.
 
-use mbint::inner::results::{Bounds, Method, Summary};
+use mbint::results::{Bounds, Method, Summary};
 
 use crate::common::{band, output, read, run_methods};
 

@@ -1,7 +1,7 @@
 //! Friction that is another along a direction.
 
 use crate::common::{curve, largest, nominal, read};
-use mbint::inner::results::Bounds;
+use mbint::results::Bounds;
 
 /// A block on three feet that slides on a plane, pushed by nothing.
 fn sliding(friction: &str, surface: &str) -> Bounds {

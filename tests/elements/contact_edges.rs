@@ -2,7 +2,7 @@
 
 use crate::common::power::{APART, assert_balance, pair};
 use crate::common::{curve, largest, nominal, read};
-use mbint::inner::results::Bounds;
+use mbint::results::Bounds;
 
 const LAWS: &str = "radius: 0.1, impact: { stiffness: 1e6, dissipation: 0.3 }, friction: { coefficient: 0.2 }";
 

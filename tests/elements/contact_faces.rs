@@ -1,7 +1,7 @@
 //! Cylinders and boxes of the second body on blocks, hulls and bars: weights, rolling, tipping, impacts, energies.
 
 use crate::common::{curve, largest, nominal, read};
-use mbint::inner::results::Bounds;
+use mbint::results::Bounds;
 use mbint::inner::study::prepare;
 
 const DAMPED: &str = "impact: { stiffness: 1e5, exponent: 1, dissipation: 20 }, friction: { coefficient: 0.9, transition_velocity: 2e-3 }";

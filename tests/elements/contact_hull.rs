@@ -1,6 +1,6 @@
 //! Contacts with the convex hull of points: against blocks, and against distances from triangles.
 
-use mbint::inner::results::Bounds;
+use mbint::results::Bounds;
 
 use crate::common::{curve, largest, nominal, read};
 

@@ -1,7 +1,7 @@
 //! Capsules against capsules, spheres and planes: distances by brute force, billiard impacts, weights.
 
 use crate::common::{curve, largest, nominal, read, row};
-use mbint::inner::results::Bounds;
+use mbint::results::Bounds;
 
 type Point = [f64; 3];
 

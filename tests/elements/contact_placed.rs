@@ -1,6 +1,6 @@
 //! Contacts in instances of assemblies, and the example of their page.
 
-use mbint::inner::results::Method;
+use mbint::results::Method;
 
 use crate::common::{band, curve, largest, nominal, output, read, row, run};
 

@@ -1,7 +1,7 @@
 //! Cylinders on a plane: standing, tipping, rolling; hulls of points.
 
 use crate::common::{curve, largest, nominal, read};
-use mbint::inner::results::Bounds;
+use mbint::results::Bounds;
 
 /// A cylinder (or what it is said to be) of 2 kg, radius 0.1 m, on a floor that slopes along x, by its weight.
 fn on_slope(slope: f64, shape: &str, inertia: &str, start: &str, duration: f64) -> Bounds {

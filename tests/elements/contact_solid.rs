@@ -1,7 +1,7 @@
 //! Contacts with capsules and blocks, against planes, spheres, cylinders, outlines, closed forms, and their images.
 
 use crate::common::{band, curve, largest, nominal, output, read, row, run};
-use mbint::inner::results::{Bounds, Method};
+use mbint::results::{Bounds, Method};
 
 const LAWS: &str = "radius: 0.1, impact: { stiffness: 1e6, dissipation: 0.3 }, friction: { coefficient: 0.2 }";
 

@@ -1,6 +1,6 @@
 //! DC motors against scipy and their steady state.
 
-use mbint::inner::results::Method;
+use mbint::results::Method;
 
 use crate::common::{band, curve, distance_from, nominal, output, read, row, run};
 

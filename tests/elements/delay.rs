@@ -1,6 +1,6 @@
 //! Delays against what they approximate.
 
-use mbint::inner::results::{Bounds, Method};
+use mbint::results::{Bounds, Method};
 
 use crate::common::{band, curve, largest, nominal, output, read, run};
 

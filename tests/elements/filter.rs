@@ -1,6 +1,6 @@
 //! Filters against closed forms and scipy.
 
-use mbint::inner::results::Method;
+use mbint::results::Method;
 
 use crate::common::{band, curve, largest, nominal, output, read, run};
 

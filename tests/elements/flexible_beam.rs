@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use mbint::inner::assemble;
 use mbint::inner::model::Description;
-use mbint::inner::results::{Bounds, Method};
+use mbint::results::{Bounds, Method};
 use nalgebra::DMatrix;
 
 use crate::common::{Vary, band, curve, distance_from, largest, nominal, order, output, read, richardson, run};

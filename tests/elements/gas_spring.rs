@@ -1,6 +1,6 @@
 //! Gas springs against scipy, the law of the gas, small oscillations, and the conserved energy.
 
-use mbint::inner::results::Method;
+use mbint::results::Method;
 
 use crate::common::{band, curve, distance, largest, nominal, output, read, row, run};
 

@@ -1,6 +1,6 @@
 //! Gears between bodies.
 
-use mbint::inner::model;
+use mbint::Model;
 
 use crate::common::power::{assert_balance, pair};
 use crate::common::closed_forms::{assert_exact, assert_exact_force};
@@ -60,7 +60,7 @@ simulation: {{ duration: 0.1, step: 1e-3 }}
         ("outputs: { push: 2*ja.force }", "ja"),
         ("effects: { f: { joint_friction: { on: ja, coefficient: 0.1, radius: 0.01 } } }\noutputs: { a: ja.angle }", "ja"),
     ] {
-        let report = model::load_str("test", &text(what), &[]).unwrap_err().to_string();
+        let report = Model::from_yaml_str("test", &text(what)).unwrap_err().to_string();
         let message = format!("the reaction of `{joint}` is not known: the teeth of `mesh` push on it");
         assert!(report.contains(&message), "{what}: {report}");
     }

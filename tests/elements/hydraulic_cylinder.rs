@@ -1,6 +1,6 @@
 //! Hydraulic cylinders against scipy, a sealed cylinder's closed form, and the steady speed behind an open valve.
 
-use mbint::inner::results::Method;
+use mbint::results::Method;
 
 use crate::common::{band, curve, distance, largest, nominal, output, read, row, run};
 

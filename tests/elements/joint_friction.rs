@@ -2,7 +2,7 @@
 //!
 //! What the smooth law leaves of Coulomb's is ½ (u₀/u)² of it: the bounds of errors below are made of that.
 
-use mbint::inner::results::Method;
+use mbint::results::Method;
 
 use crate::common::power::{assert_balance, pair};
 use crate::common::{

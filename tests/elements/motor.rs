@@ -1,10 +1,9 @@
 //! Motors: prescribed motions against their formulas, and the torques that they take.
 
-use mbint::inner::results::Bounds;
-use mbint::inner::study::{self, Options};
+use mbint::results::Bounds;
 
 use crate::common::power::{assert_balance, pair};
-use crate::common::{Findings, curve, distance, distance_from, nominal, read, row};
+use crate::common::{Findings, curve, distance, distance_from, nominal, read, refused, row};
 
 fn wheel(motor: &str) -> Bounds {
     nominal(&read(&format!(
@@ -243,12 +242,12 @@ simulation: {{ duration: 0.5, step: 1e-2 }}
         )
     };
     for text in [hinges(" + 0.2*t^3*(1 rad/s^3)"), gears(" + 0.2*t^3*(1 rad/s^3)")] {
-        let message = study::run(&read(&text), Options::default()).expect_err("they part").to_string();
+        let message = refused(&text);
         assert!(message.contains("joint `two` contradicts") && message.contains("t = 0.08 s"), "{message}");
         // The explicit method follows the first in the same way.
         let explicit = text.replace("step: 1e-2", "tolerance: 1e-6, output_step: 1e-2, scheme: explicit");
         assert_ne!(explicit, text);
-        let message = study::run(&read(&explicit), Options::default()).expect_err("they part").to_string();
+        let message = refused(&explicit);
         assert!(message.contains("joint `two` contradicts") && message.contains("t = 0.08 s"), "{message}");
     }
     for text in [hinges(""), gears("")] {

@@ -1,11 +1,10 @@
 //! Motors whose speed follows a state or a position, against closed forms and motors that are prescribed.
 
 use mbint::inner::model::Formulation;
-use mbint::inner::results::{Bounds, Method};
-use mbint::inner::study::{self, Options};
+use mbint::results::{Bounds, Method};
 
 use crate::common::power::{assert_balance, pair, spatial_pair};
-use crate::common::{band, curve, distance, distance_from, nominal, output, read, run};
+use crate::common::{band, curve, distance, distance_from, nominal, output, read, refused, run};
 
 /// How a motion is integrated, by how much positions and speeds may be off, and by how much forces.
 const WAYS: [(&str, f64, f64); 4] = [
@@ -211,7 +210,7 @@ fn two_motors_agree_or_contradict() {
     assert!(off(&bounds, "angle", |t| angle(0.2, t)) < 1e-10);
     assert!(off(&bounds, "torque", |t| torque(0.2, t)) < 1e-7);
     for (other, joint) in [("speed: second", "other"), ("position: 0.5 + 0*t", "drive")] {
-        let error = study::run(&read(&text(other)), Options::default()).unwrap_err().to_string();
+        let error = refused(&text(other));
         assert!(error.contains(&format!("joint `{joint}` gives a speed by a state")), "{error}");
     }
 }

@@ -1,6 +1,6 @@
 //! PID controllers against scipy, the balance of power, and the same written out by `states`.
 
-use mbint::inner::results::Method;
+use mbint::results::Method;
 
 use crate::common::{band, curve, distance, largest, nominal, output, read, row, run};
 

@@ -1,7 +1,7 @@
 //! Planetary sets: Willis' equation, torques, inertia.
 
-use mbint::inner::model;
-use mbint::inner::results::Bounds;
+use mbint::Model;
+use mbint::results::Bounds;
 
 use crate::common::closed_forms::{assert_exact, assert_exact_force};
 use crate::common::{nominal, read};
@@ -107,7 +107,7 @@ fn what_is_no_set_is_refused() {
         ("{ sun: js, carrier: js, ratio: 3 }", "`sun` and `carrier` are the same joint"),
         ("{ sun: js, carrier: jc, ratio: -3 }", "positive"),
     ] {
-        let report = model::load_str("test", &text(&["sun", "carrier"], joints, set), &[]).unwrap_err().to_string();
+        let report = Model::from_yaml_str("test", &text(&["sun", "carrier"], joints, set)).unwrap_err().to_string();
         assert!(report.contains(message), "{set}: {report}");
     }
 }

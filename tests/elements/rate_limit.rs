@@ -1,6 +1,6 @@
 //! Rate limits against scipy and ramps.
 
-use mbint::inner::results::Method;
+use mbint::results::Method;
 
 use crate::common::{band, curve, largest, nominal, output, read, row, run};
 

@@ -1,7 +1,7 @@
 //! Revolute joints: reactions of a rod at rest and of a spinning one, and MSC Adams.
 
 use mbint::inner::model::Formulation;
-use mbint::inner::results::Bounds;
+use mbint::results::Bounds;
 
 use crate::common::power::{assert_balance, pair, spatial_pair};
 use crate::common::adams::{Case, compared_with_adams};

@@ -1,7 +1,7 @@
 //! Wheels that roll: on a slope, on a plank that slides, on a lever that rocks.
 
 use mbint::inner::model::Formulation;
-use mbint::inner::results::Method;
+use mbint::results::Method;
 
 use crate::common::power::{assert_balance, pair};
 use crate::common::{Vary, band, curve, distance_from, largest, nominal, order, output, read, run};

@@ -1,7 +1,7 @@
 //! Balls and discs that roll on planes: on a slope, on a turntable, in circles, falling over, on a cart.
 
 use mbint::inner::model::{Description, Formulation};
-use mbint::inner::results::Method;
+use mbint::results::Method;
 use mbint::inner::study::{self, Options};
 
 use crate::common::dormand_prince::dormand_prince;

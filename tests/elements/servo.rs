@@ -2,7 +2,7 @@
 
 use crate::common::power::{assert_balance, pair};
 use crate::common::{Vary, band, curve, distance, distance_from, nominal, output, read, richardson, run};
-use mbint::inner::results::Method;
+use mbint::results::Method;
 
 /// J θ̈ + k_d θ̇ + k_p θ = k_p θ₀ from rest: the step response of a damped oscillator.
 #[test]

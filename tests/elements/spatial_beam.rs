@@ -4,7 +4,7 @@
 use std::f64::consts::PI;
 
 use mbint::inner::model::Description;
-use mbint::inner::results::Bounds;
+use mbint::results::Bounds;
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
 use crate::common::runge_kutta::runge_kutta;

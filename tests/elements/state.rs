@@ -1,6 +1,6 @@
 //! States against closed forms, scipy, and the balance of power.
 
-use mbint::inner::results::Method;
+use mbint::results::Method;
 
 use crate::common::{band, curve, largest, model, nominal, output, read, run};
 

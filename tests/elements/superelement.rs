@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use mbint::inner::model::Description;
-use mbint::inner::results::Method;
+use mbint::results::Method;
 
 use crate::common::finite_elements::Beam;
 use crate::common::{band, curve, distance, largest, load, nominal, output, read, run};

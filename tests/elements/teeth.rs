@@ -1,7 +1,7 @@
 //! Forces of teeth on bearings, against F_t = T/r, F_r = F_t tan α / cos β, F_a = F_t tan β and those of bevel gears.
 
 use mbint::inner::model::{self, Formulation};
-use mbint::inner::results::Bounds;
+use mbint::results::Bounds;
 
 use crate::common::{curve, nominal, read};
 

@@ -1,7 +1,7 @@
 //! Friction between teeth that roll: what is lost is a share of what is transmitted, whichever drives. (That of worms
 //! is in `worm`.)
 
-use mbint::inner::results::Bounds;
+use mbint::results::Bounds;
 
 use crate::common::{curve, nominal, read};
 

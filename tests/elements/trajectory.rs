@@ -1,6 +1,6 @@
 //! Trajectories against scipy and closed forms, and what follows them.
 
-use mbint::inner::results::{Bounds, Method};
+use mbint::results::{Bounds, Method};
 
 use crate::common::{band, curve, distance_from, nominal, output, read, row, run};
 

@@ -2,7 +2,7 @@
 //! the original does.
 
 use mbint::inner::model::{Description, load_str};
-use mbint::inner::results::Bounds;
+use mbint::results::Bounds;
 use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 use proptest::prelude::*;
 

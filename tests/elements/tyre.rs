@@ -1,12 +1,12 @@
 //! Tyres: their characteristics with published coefficients, a single-track car against its linear solution and scipy,
 //! and images.
 
-use mbint::inner::results::Method;
+use mbint::results::Method;
 
 use crate::common::{band, curve, distance, largest, nominal, output, read, row, run};
 
 /// A cart that is too heavy to be led turns while it goes on along x: the slip angle is −angle.
-fn characteristic(tyre: &str, space: &str) -> mbint::inner::results::Bounds {
+fn characteristic(tyre: &str, space: &str) -> mbint::results::Bounds {
     let (inertia, spin, start) = match space {
         "planar" => ("1e9", "angular_velocity", ", cart.angle: -0.3"),
         _ => ("[1e9, 1e9, 1e9]", "omega.z", ", cart.orientation: { axis: [0, 0, 1], angle: -0.3 }"),
@@ -195,7 +195,7 @@ simulation: {{ duration: 1, step: 1e-3, output_step: 0.02 }}
 }
 
 /// A car of 400 kg, seen from the side.
-fn braked(joint: &str, effect: &str, start: &str) -> mbint::inner::results::Bounds {
+fn braked(joint: &str, effect: &str, start: &str) -> mbint::results::Bounds {
     nominal(&read(&format!(
         "
 bodies:

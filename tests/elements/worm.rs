@@ -1,6 +1,6 @@
 //! Worm gears: speeds, forces on bearings, efficiency, self-locking.
 
-use mbint::inner::results::Bounds;
+use mbint::results::Bounds;
 
 use crate::common::closed_forms::{assert_converges, assert_exact};
 use crate::common::{curve, nominal, read};

@@ -3,7 +3,7 @@
 use std::fmt::{self, Display, Formatter, Write};
 
 use mbint::Model;
-use mbint::inner::study::{self, AllocateOptions, Options};
+use mbint::results::Criterion;
 
 use crate::random::{Random, digits};
 
@@ -252,8 +252,7 @@ pub fn allocations(seed: u64, draws: u64) -> Tally {
     for number in 0..draws {
         let draw = Allocated::draw(&mut Random::new(seed, number));
         let model = Model::from_yaml_str("allocated", &draw.yaml).unwrap();
-        let asked = AllocateOptions { share: None, widest: WIDEST };
-        let found = study::allocate(model.description(), asked, &Options::default());
+        let found = model.study().allocate(Criterion::WorstCase, WIDEST);
         let found = found.unwrap_or_else(|error| panic!("draw {number}: {error}\n{}", draw.yaml));
         tally.draws += 1;
         let after: Vec<f64> = found.tolerances.iter().map(|own| own.after.above).collect();

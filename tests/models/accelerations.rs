@@ -3,7 +3,7 @@
 //! disturbs them.
 
 use mbint::inner::model::Description;
-use mbint::inner::results::Method;
+use mbint::results::Method;
 
 use crate::common::{Vary, band, curve, distance, distance_from, largest, nominal, order, read, run};
 

@@ -3,12 +3,12 @@
 use mbint::inner::methods::Taylor;
 use mbint::inner::model::{Description, ParameterValue};
 use mbint::inner::numerics::RangeKind;
-use mbint::inner::results::{Bounds, Method};
+use mbint::results::{Bounds, Method};
 
 use crate::common::{Findings, Vary, band, distance, largest, load, model, model_files, output, read, run};
 
 /// Share of the times at which a method's band leaves another's by more than the errors of both.
-fn outside(output: &mbint::inner::results::OutputBounds, inner: Method, outer: Method) -> f64 {
+fn outside(output: &mbint::results::OutputBounds, inner: Method, outer: Method) -> f64 {
     let (inner, outer) = (band(output, inner), band(output, outer));
     let rows = inner.lower.len();
     let leaves = |row: &usize| {

@@ -6,8 +6,8 @@
 
 use mbint::inner::methods::{Certified, Proof};
 use mbint::inner::model::Description;
-use mbint::inner::results::{Bounds, Method};
 use mbint::inner::study::{self, Options};
+use mbint::results::{Bounds, Method};
 
 use crate::common::*;
 

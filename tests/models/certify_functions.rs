@@ -2,7 +2,7 @@
 //! and forces that jump. Solutions are by hand, or by Dormand and Prince's method of equations by hand.
 
 use mbint::inner::certificate::{Certificate, check};
-use mbint::inner::results::{Bounds, Method};
+use mbint::results::{Bounds, Method};
 
 use super::certify_motion::{box_of, certify, excess};
 use crate::common::*;

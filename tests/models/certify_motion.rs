@@ -4,8 +4,8 @@
 use mbint::inner::certificate::{Certificate, check};
 use mbint::inner::methods::{BoundsRequest, Certified, Proof};
 use mbint::inner::model::Description;
-use mbint::inner::results::{Bounds, Method};
 use mbint::inner::study::{self, Options};
+use mbint::results::{Bounds, Method};
 use rayon::prelude::*;
 
 use crate::common::measured::Case;

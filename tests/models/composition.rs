@@ -2,7 +2,7 @@
 
 use mbint::inner::methods::{Chebyshev, Degree, Expand, Scan};
 use mbint::inner::model::{Description, ParameterValue};
-use mbint::inner::results::{Method, OutputBounds};
+use mbint::results::{Method, OutputBounds};
 
 use crate::common::{Findings, band, load, model, model_files, output, run, uncertain_count};
 
@@ -19,7 +19,7 @@ fn composed(mut description: Description, order: usize, points: usize) -> Descri
 fn against_scan(output: &OutputBounds) -> (f64, f64) {
     let (bounds, scan) = (band(output, Method::Chebyshev), band(output, Method::Scan));
     let width =
-        |band: &mbint::inner::results::Band| band.upper.iter().zip(&band.lower).map(|(u, l)| u - l).collect::<Vec<_>>();
+        |band: &mbint::results::Band| band.upper.iter().zip(&band.lower).map(|(u, l)| u - l).collect::<Vec<_>>();
     let (ours, true_width) = (width(bounds), width(scan));
     let outside = (0..ours.len())
         .filter(|&row| true_width[row] > 0.0)

@@ -1,6 +1,6 @@
 //! Controllers of shipped models against what control theory says of them.
 
-use mbint::inner::results::Method;
+use mbint::results::Method;
 
 use crate::common::{Vary, band, curve, largest, model, nominal, output, run};
 

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use mbint::inner::methods::{BoundsRequest, Scan};
-use mbint::inner::results::Method;
+use mbint::results::Method;
 
 use crate::common::measured::Case;
 use crate::common::{band, curve, distance_from, largest, model, nominal, output, run};

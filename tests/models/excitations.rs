@@ -1,7 +1,7 @@
 //! Bounds over functions of the time, against closed forms of linear systems, another integrator, and random functions.
 
 use mbint::inner::model::{Description, Witness};
-use mbint::inner::results::{Bounds, FunctionWitness, Summary, Verdict};
+use mbint::results::{Bounds, FunctionWitness, Summary, Verdict};
 
 use crate::common::{read, run_methods};
 use crate::excitation_classes::{PARTS, kernel, over_kernel};

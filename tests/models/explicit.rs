@@ -4,8 +4,8 @@
 use mbint::inner::methods::Taylor;
 use mbint::inner::model::{Description, SchemeChoice};
 use mbint::inner::numerics::RangeKind;
-use mbint::inner::results::Method;
 use mbint::inner::study::{self, Options};
+use mbint::results::Method;
 
 use crate::common::{
     Vary, band, curve, distance, distance_from, largest, model, nominal, output, read, reference, row, run, run_methods,

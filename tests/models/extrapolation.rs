@@ -3,7 +3,7 @@
 use mbint::inner::methods::Taylor;
 use mbint::inner::model::Description;
 use mbint::inner::numerics::RangeKind;
-use mbint::inner::results::Method;
+use mbint::results::Method;
 
 use crate::common::{
     Vary, band, curve, distance_from, largest, model, nominal, order, output, read, reference, row, run,

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use mbint::inner::model;
-use mbint::inner::results::Method;
+use mbint::results::Method;
 
 use crate::common::{Vary, band, curve, largest, nominal, output, read, run};
 

@@ -1,8 +1,6 @@
 //! Gradients of motions that are cut at events, against closed forms, whose derivatives are central differences.
 
-use mbint::inner::study::{Options, gradient};
-
-use crate::common::read;
+use crate::common::model_of;
 
 const GRAVITY: f64 = 9.81;
 
@@ -10,7 +8,7 @@ const GRAVITY: f64 = 9.81;
 fn are_those_of(text: &str, parameters: &[f64], of: impl Fn(&[f64], f64) -> [f64; 2], kinks: &[f64]) {
     // Steps err by 1e-10 of the motion at most, and events follow each other: values differ by up to 4e-9 here,
     // derivatives by up to 5e-8.
-    let found = gradient(&read(text), &Options::default()).unwrap();
+    let found = model_of(text).gradients().unwrap();
     let mut rows = 0;
     for (row, &time) in found.times.iter().enumerate().filter(|(_, time)| **time > 0.0) {
         if kinks.iter().any(|kink| (kink - time).abs() < 1e-4) {
@@ -133,7 +131,7 @@ simulation: {{ duration: 1, step: 1e-4, output_step: 0.05 }}
 "
         )
     };
-    let unreliable_from = |floor: f64| gradient(&read(&text(floor)), &Options::default()).unwrap().unreliable_from;
+    let unreliable_from = |floor: f64| model_of(&text(floor)).gradients().unwrap().unreliable_from;
     // It falls for 0.4515 s.
     assert_eq!(unreliable_from(0.0), Some(0.5));
     assert_eq!(unreliable_from(-10.0), None);

@@ -5,7 +5,7 @@
 use mbint::inner::methods::{BoundsRequest, Chebyshev, Scan, Taylor};
 use mbint::inner::model::Description;
 use mbint::inner::numerics::RangeKind;
-use mbint::inner::results::{Method, OutputBounds};
+use mbint::results::{Method, OutputBounds};
 
 use crate::common::runge_kutta::runge_kutta;
 use crate::common::{Findings, Vary, band, model, output, read, reference, run, uncertain_count};

@@ -2,7 +2,7 @@
 //! corner of many, motions that bend over the box; and whether whatever a run has simulated lies within its bands. The
 //! truths are closed forms, or another method's motions over dense grids.
 
-use mbint::inner::results::{Bounds, Method};
+use mbint::results::{Bounds, Method};
 
 use super::honesty_search::{assert_honest, cosine, oscillators, sum};
 use crate::common::runge_kutta::runge_kutta;

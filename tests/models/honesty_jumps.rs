@@ -3,7 +3,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use mbint::inner::results::Method;
+use mbint::results::Method;
 
 use super::honesty_search::assert_honest;
 use crate::common::{band, output, read, run};

@@ -7,7 +7,7 @@
 use std::f64::consts::PI;
 
 use mbint::inner::model::Description;
-use mbint::inner::results::{Bounds, Method};
+use mbint::results::{Bounds, Method};
 
 use crate::common::runge_kutta::runge_kutta;
 use crate::common::{Vary, band, output, read, run};

@@ -2,7 +2,7 @@
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
-use mbint::inner::results::Bounds;
+use mbint::results::Bounds;
 
 use crate::common::{curve, largest, nominal, read};
 

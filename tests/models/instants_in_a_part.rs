@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use mbint::inner::results::ReducedSummary;
+use mbint::results::ReducedSummary;
 
 use crate::common::{read, run_methods};
 

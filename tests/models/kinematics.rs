@@ -1,9 +1,8 @@
 //! Motions that follow from motors, against closed forms.
 
-use mbint::inner::results::{Method, Verdict};
-use mbint::inner::study::{self, Options};
+use mbint::results::{Method, Verdict};
 
-use crate::common::{nominal, read, run};
+use crate::common::{nominal, ran, read, refused, run, study_of};
 use crate::statics::{close, example};
 
 /// Position, velocity and acceleration of a slider crank's slider at the crank's angle θ = ω t.
@@ -58,7 +57,7 @@ joints: { hinge: { revolute: [ground, rod.O] } }
 outputs: { angle: rod.angle }
 simulation: { duration: 1 }
 ";
-    let message = study::run(&read(text), Options::default()).unwrap_err().to_string();
+    let message = refused(text);
     assert!(message.contains("`rod.angle`") || message.contains("`hinge.angle`"), "{message}");
     assert!(message.contains("motor"), "{message}");
 }
@@ -67,8 +66,7 @@ simulation: { duration: 1 }
 fn a_mechanism_that_locks_says_when() {
     // The rod is shorter than the crank: it is taut where r sin θ = l.
     let text = include_str!("../../docs/examples/kinematics.yaml").replace("value: 0.3,", "value: 0.08,");
-    let (bounds, summary) =
-        study::run(&read(&text), Options { methods: Some(Vec::new()), ..Options::default() }).unwrap();
+    let (bounds, summary) = ran(study_of(&text).nominal());
     let locks = f64::asin(0.8) / 10.0;
     assert!(summary.failure.unwrap().contains("locks"));
     let last = *bounds.times.last().unwrap();
@@ -85,7 +83,7 @@ fn what_is_one_number_a_motion_is_bounded_between_coarse_rows() {
     );
     let text =
         format!("{text}requirements: {{ slow: v <= 1.1 m/s, near: {{ output: x, max: 0.401 m, from: 0.1 }} }}\n");
-    let (_, summary) = study::run(&read(&text), Options::default()).unwrap();
+    let (_, summary) = ran(study_of(&text));
     let fine = |r: f64, l: f64| -> f64 {
         (0..=63_000).map(|place| slider(r, l, 10.0, 1e-5 * f64::from(place))[1]).fold(0.0, f64::max)
     };
@@ -151,8 +149,7 @@ fn samples_that_lock_do_not_go_on_beyond_the_gap_on_another_branch() {
     // Rods shorter than the crank lock before the slider reaches the pivot: what is left stays where x ≥ 0.
     let text =
         near_a_change_point("interval: [0.093, 0.12]", "bounds: { chebyshev: { order: 6 }, scan: { points: 19 } }");
-    let options = Options { skip_infeasible: true, ..Options::default() };
-    let (bounds, _) = study::run(&read(&text), options).unwrap();
+    let (bounds, _) = ran(study_of(&text).skip_infeasible());
     let mut rows = 0;
     for (row, &time) in bounds.times.iter().enumerate() {
         for band in &bounds.outputs[0].bands {
@@ -186,8 +183,7 @@ guess: { c.angle: 0.5 }
 outputs: { turned: c.angle - a.angle, y: c.C.y }
 simulation: { duration: 4, output_step: 0.1 }
 ";
-    let (bounds, summary) =
-        study::run(&read(text), Options { methods: Some(Vec::new()), ..Options::default() }).unwrap();
+    let (bounds, summary) = ran(study_of(text).nominal());
     assert!(summary.failure.is_none(), "{:?}", summary.failure);
     for (row, &time) in bounds.times.iter().enumerate() {
         assert!(bounds.outputs[0].nominal[row].abs() < 1e-7, "{time}: {}", bounds.outputs[0].nominal[row]);

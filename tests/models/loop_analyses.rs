@@ -3,8 +3,8 @@
 
 use mbint::inner::methods::{Certified, Proof};
 use mbint::inner::model::{Description, Formulation, SchemeChoice};
-use mbint::inner::results::{Bounds, Method};
 use mbint::inner::study;
+use mbint::results::{Bounds, Method};
 
 use crate::common::{Vary, band, curve, distance, largest, model, nominal, output, read, richardson, run, run_methods};
 use crate::statics::{close, value};

@@ -4,9 +4,9 @@ use mbint::inner::assemble::{self, Questions};
 use mbint::inner::compile::Scheme;
 use mbint::inner::model::{Description, Formulation};
 use mbint::inner::reduce::Reduction;
-use mbint::inner::results::Method;
 use mbint::inner::simulate::Simulator;
 use mbint::inner::study;
+use mbint::results::Method;
 
 use crate::common::{
     Vary, band, curve, distance, largest, load, model, model_files, nominal, output, read, richardson, run,

@@ -2,8 +2,8 @@
 //! is left of it.
 
 use mbint::inner::model::{Description, Formulation};
-use mbint::inner::results::Method;
 use mbint::inner::study::{self, Options};
+use mbint::results::Method;
 
 use crate::common::{Vary, curve, distance, largest, nominal, output, read, richardson, run_methods};
 use crate::singular::{one_crank, parallelogram};

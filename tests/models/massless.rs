@@ -1,10 +1,7 @@
 //! Bodies without mass: joints or springs determine where they are.
 
-use mbint::inner::model;
-use mbint::inner::study::{self, Options};
-
 use crate::common::closed_forms::assert_converges;
-use crate::common::{Vary, curve, distance, distance_from, nominal, order, read};
+use crate::common::{Vary, curve, distance, distance_from, nominal, order, read, refused, study_of};
 
 /// Two springs in series are one of stiffness k₁k₂/(k₁ + k₂), and the node between them divides what they stretch.
 #[test]
@@ -127,7 +124,7 @@ simulation: {{ duration: 2, step: 1e-3, output_step: 0.05, formulation: {formula
     assert!(distance_from(&bounds.times, curve(&bounds, "y"), exact) < 5e-5);
     let ratio = curve(&bounds, "a").iter().zip(curve(&bounds, "y")).map(|(a, y)| (a - 0.6 * y).abs());
     assert!(ratio.fold(0.0, f64::max) < 1e-10);
-    if let Err(error) = study::run(&read(&text("absolute")), Options::default()) {
+    if let Err(error) = study_of(&text("absolute")).run() {
         assert!(error.to_string().contains("joints place its body only in part"), "{error}");
     }
 }
@@ -144,8 +141,7 @@ outputs: {{ x: block.x, n: node.x }}
 simulation: {{ duration: 1, step: 1e-3 }}
 "
         );
-        let description = model::load_str("x.yaml", &text, &[]).unwrap_or_else(|diagnostics| panic!("{diagnostics}"));
-        study::run(&description, Options::default()).unwrap_err().to_string()
+        refused(&text)
     };
     let mount = "mount: { spring_damper: { between: [ground, block], along: x, stiffness: 10, free_length: 0.1 } }";
     let loose = message(mount);

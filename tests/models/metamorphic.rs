@@ -2,7 +2,7 @@
 //! which way round the mechanism is built.
 
 use mbint::inner::model::Description;
-use mbint::inner::results::{Bounds, Method};
+use mbint::results::{Bounds, Method};
 
 use crate::common::{band, output, read, run};
 use crate::honesty_search::{assert_honest, oscillators, sum};

@@ -1,9 +1,8 @@
 //! Small vibrations, against closed forms and against equations written by hand.
 
-use mbint::inner::results::{Bounds, Method, Verdict};
-use mbint::inner::study::{self, Options};
+use mbint::results::{Bounds, Method, Verdict};
 
-use crate::common::{nominal, read, run};
+use crate::common::{nominal, ran, read, run, study_of};
 use crate::statics::{close, ends, example, value};
 
 const TAU: f64 = std::f64::consts::TAU;
@@ -367,7 +366,7 @@ bounds: {{ chebyshev: {{ order: 6 }}, scan: {{ points: 5 }} }}
     };
     let limits = "above: mode1.frequency >= drive*0.9, damped: { output: mode1.damping, min: 0.09, max: 0.105 }, \
                   soft: slow.amplitude <= 2.6e-3, low: mode1.frequency <= 3.2";
-    let (bounds, summary) = study::run(&read(&text(limits)), Options::default()).unwrap();
+    let (bounds, summary) = ran(study_of(&text(limits)));
     let frequency = |k: f64, m: f64| (k / m).sqrt() / std::f64::consts::TAU;
     let damping = |k: f64, m: f64| 4.0 / (2.0 * (k * m).sqrt());
     let wanted = [

@@ -1,10 +1,9 @@
 //! Modes of mechanisms with controllers: against roots of characteristic polynomials, poles of filters, limits of
 //! stability, and scipy.
 
-use mbint::inner::results::{Bounds, Method};
-use mbint::inner::study::{self, Options};
+use mbint::results::{Bounds, Method};
 
-use crate::common::{nominal, read, run};
+use crate::common::{nominal, ran, read, run, study_of};
 use crate::statics::{close, ends, example, value};
 
 const TAU: f64 = std::f64::consts::TAU;
@@ -105,8 +104,8 @@ fn a_loop_becomes_unstable_where_hurwitz_says() {
     // 2 s³ + 4 s² + 70 s + ki is stable up to ki = 4·70/2, where it vibrates with √35 rad/s.
     let limit = 140.0;
     for (ki, sign) in [(limit * (1.0 - 1e-8), -1.0), (limit * (1.0 + 1e-8), 1.0)] {
-        let description = read(&controlled(&format!("{ki}"), "modes: { at: equilibrium }"));
-        let (bounds, summary) = study::run(&description, Options::default()).unwrap();
+        let text = controlled(&format!("{ki}"), "modes: { at: equilibrium }");
+        let (bounds, summary) = ran(study_of(&text));
         let growth = value(&bounds, "growth");
         // dσ/dki from the cubic: −1/(6 s² + 8 s + 70) at s = i√35.
         let slope = (-1.0 / Complex::new(70.0 - 210.0, 8.0 * 35.0_f64.sqrt())).re;

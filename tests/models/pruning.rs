@@ -6,9 +6,9 @@ use std::fmt::Write as _;
 use mbint::inner::compile::Tapes;
 use mbint::inner::export::bounds_csv;
 use mbint::inner::model::{self, Description};
-use mbint::inner::results::{Bounds, Method};
-use mbint::inner::results::{MethodSummary, Summary};
 use mbint::inner::study::{self, Options};
+use mbint::results::{Bounds, Method};
+use mbint::results::{MethodSummary, Summary};
 
 fn read(text: &str) -> Description {
     model::load_str("test", text, &[]).unwrap_or_else(|diagnostics| panic!("{diagnostics}"))
@@ -272,10 +272,10 @@ bounds: { scan: { points: 2 } }
 
 /// Largest difference of two runs' bounds, output by output, relative to the output's size.
 fn difference(a: &Bounds, b: &Bounds) -> Vec<(String, f64)> {
-    let of = |(a, b): (&mbint::inner::results::OutputBounds, &mbint::inner::results::OutputBounds)| {
+    let of = |(a, b): (&mbint::results::OutputBounds, &mbint::results::OutputBounds)| {
         assert_eq!(a.name, b.name);
         let size = a.nominal.iter().fold(0.0_f64, |size, value| size.max(value.abs()));
-        let band = |one: &mbint::inner::results::Band, other: &mbint::inner::results::Band| {
+        let band = |one: &mbint::results::Band, other: &mbint::results::Band| {
             let lower = one.lower.iter().zip(&other.lower);
             lower.chain(one.upper.iter().zip(&other.upper)).map(|(x, y)| (x - y).abs()).fold(0.0, f64::max)
         };
@@ -283,7 +283,7 @@ fn difference(a: &Bounds, b: &Bounds) -> Vec<(String, f64)> {
         let bands = a.bands.iter().zip(&b.bands).map(|(a, b)| band(a, b));
         (a.name.clone(), bands.fold(nominal, f64::max) / size)
     };
-    let same = |output: &&mbint::inner::results::OutputBounds| a.outputs.iter().any(|known| known.name == output.name);
+    let same = |output: &&mbint::results::OutputBounds| a.outputs.iter().any(|known| known.name == output.name);
     a.outputs.iter().zip(b.outputs.iter().filter(same)).map(of).collect()
 }
 

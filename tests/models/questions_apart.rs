@@ -2,8 +2,8 @@
 //! parameters.
 
 use mbint::inner::model::Description;
-use mbint::inner::results::{Summary, Verdict};
 use mbint::inner::study;
+use mbint::results::{Summary, Verdict};
 
 use crate::common::{curve, read, run_methods};
 

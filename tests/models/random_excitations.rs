@@ -2,7 +2,7 @@
 //! oscillator and Rice's formula.
 
 use mbint::inner::model::Description;
-use mbint::inner::results::{Bounds, StatisticsResult, Summary, YieldSummary};
+use mbint::results::{Bounds, StatisticsResult, Summary, YieldSummary};
 
 use crate::common::{load, output, read, run_methods};
 
@@ -89,7 +89,7 @@ fn roads_shake_a_quarter_car_as_lyapunovs_equation_says() {
         near(band.upper[0], 290.0);
         near(band.lower[0], 410.0);
         assert!(band.error.total[0] < 1e-4 * band.upper[0] && !band.error.unresolved[0]);
-        let holds = summary.requirements[0].verdict == mbint::inner::results::Verdict::Holds;
+        let holds = summary.requirements[0].verdict == mbint::results::Verdict::Holds;
         assert_eq!(holds, class != "C");
     }
 }

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use mbint::inner::model::{self, Description, Override};
-use mbint::inner::results::{ReducedBand, ReducedSummary, RequirementSummary, Summary, Verdict};
+use mbint::results::{ReducedBand, ReducedSummary, RequirementSummary, Summary, Verdict};
 
 use crate::common::{read, run_methods};
 

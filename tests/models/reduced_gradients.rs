@@ -1,13 +1,12 @@
 //! Gradients of reduced outputs and of requirements' margins, against closed forms of an oscillator.
 
 use mbint::ReducedGradients;
-use mbint::inner::study::{Options, gradient};
 
-use crate::common::read;
+use crate::common::model_of;
 
 /// x = sin(ω t)/ω with ω = √k: a mass of 1 kg on a spring of k = 4 N/m, pushed off at 1 m/s.
 fn oscillator() -> Vec<ReducedGradients> {
-    let description = read(
+    let model = model_of(
         "
 parameters: { k: { value: 4 N/m, tolerance: 1% } }
 bodies: { mass: { mass: 1, coordinates: [x] } }
@@ -37,7 +36,7 @@ requirements:
 simulation: { duration: 3, step: 2e-4, output_step: 0.01 }
 ",
     );
-    gradient(&description, &Options::default()).unwrap().reduced
+    model.gradients().unwrap().reduced
 }
 
 /// Asserts value and derivative by k against a closed form.

@@ -2,12 +2,10 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use mbint::inner::model::Description;
-use mbint::inner::results::{Summary, Uncertain, Verdict};
-use mbint::inner::study::{AllocateOptions, Options, allocate};
+use mbint::results::{Criterion, Summary, Uncertain, Verdict};
 
 use crate::common::random::Random;
-use crate::common::{read, run_methods};
+use crate::common::{read, run_methods, study_of};
 
 /// Springs side by side.
 const SPRINGS: usize = 14;
@@ -26,17 +24,17 @@ fn spring(number: usize) -> (f64, f64) {
 
 /// A mass on springs side by side, pushed off at 1 m/s: x = sin(ω t)/ω with ω² = Σ k/m.
 fn summary(further: &str) -> Summary {
-    run_methods(&model(REQUIREMENTS, further), None).1
+    run_methods(&read(&text(REQUIREMENTS, further)), None).1
 }
 
-fn model(requirements: &str, further: &str) -> Description {
+fn text(requirements: &str, further: &str) -> String {
     let stiffness = |number: usize| {
         let (value, tolerance) = spring(number);
         format!("  k{number}: {{ value: {value}, unit: N/m, tolerance: {}% }}\n", 100.0 * tolerance)
     };
     let parameters: String = (0..SPRINGS).map(stiffness).collect();
     let sum = (0..SPRINGS).map(|number| format!("k{number}")).collect::<Vec<_>>().join(" + ");
-    let text = format!(
+    format!(
         "
 parameters:
 {parameters}  m: {{ value: 2, unit: kg, tolerance: 5% }}
@@ -57,8 +55,7 @@ requirements:
 simulation: {{ duration: 1, output_step: 0.01 }}
 {further}
 "
-    );
-    read(&text)
+    )
 }
 
 /// Ends over the box: all functions below are monotonous in the mass and in the stiffness there.
@@ -164,9 +161,8 @@ fn statistics_of_fifteen_parameters_are_those_of_products() {
 /// the margin is left.
 #[test]
 fn tolerances_of_fifteen_parameters_are_as_loose_as_may_be() {
-    let model = model("  short: mass.x <= 0.215", "bounds: { tolerance: 1e-2 }");
-    let asked = AllocateOptions { share: None, widest: 3.0 };
-    let found = allocate(&model, asked, &Options::default()).unwrap();
+    let study = study_of(&text("  short: mass.x <= 0.215", "bounds: { tolerance: 1e-2 }"));
+    let found = study.allocate(Criterion::WorstCase, 3.0).unwrap();
     let (nominal, spread) = (0..SPRINGS)
         .map(spring)
         .fold((0.0, 0.0), |(sum, spread), (value, share)| (sum + value, spread + value * share));

@@ -1,8 +1,8 @@
 //! Reactions of joints that a robot's file welds: the force and torque on the second body, in its own frame.
 
-use mbint::inner::model;
+use mbint::Model;
 
-use crate::common::{curve, nominal};
+use crate::common::curve;
 
 fn first_values<const N: usize>(files: &[(&str, &str)], yaml: &str, outputs: [&str; N]) -> [f64; N] {
     let folder = tempfile::tempdir().unwrap();
@@ -10,9 +10,9 @@ fn first_values<const N: usize>(files: &[(&str, &str)], yaml: &str, outputs: [&s
     let listed = outputs.iter().enumerate().map(|(i, output)| format!("o{i}: {output}")).collect::<Vec<_>>().join(", ");
     let simulation = "simulation: { duration: 1e-3, step: 1e-3, output_step: 1e-3 }";
     let text = format!("{yaml}\noutputs: {{ {listed} }}\n{simulation}\n");
-    let reading = model::read_str(&folder.path().join("model.yaml").display().to_string(), &text, &[]);
-    let bounds = nominal(&reading.description.unwrap_or_else(|| panic!("{}", reading.diagnostics)));
-    std::array::from_fn(|i| curve(&bounds, &format!("o{i}"))[0])
+    let model = Model::from_yaml_str(&folder.path().join("model.yaml").display().to_string(), &text);
+    let result = model.and_then(|model| model.study().nominal().run()).unwrap_or_else(|error| panic!("{error}"));
+    std::array::from_fn(|i| curve(result.bounds(), &format!("o{i}"))[0])
 }
 
 #[track_caller]

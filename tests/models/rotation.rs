@@ -29,7 +29,7 @@ simulation: {{ duration: {duration}, step: 1e-2, output_step: 0.1 }}
 /// Largest departure of an output from its first value, at h and h/2.
 fn drifts(description: &Description, formulas: &[&str], h: f64) -> Vec<[f64; 2]> {
     let runs = [h, 0.5 * h].map(|h| nominal(&description.clone().observing(formulas).step(h)));
-    let drift = |run: &mbint::inner::results::Bounds, name: &str| {
+    let drift = |run: &mbint::results::Bounds, name: &str| {
         let values = curve(run, name);
         largest(values.iter().map(|value| value - values[0]))
     };

@@ -1,7 +1,7 @@
 //! Every file of `models/` is one that a user can run.
 
 use mbint::inner::model::{self, Description};
-use mbint::inner::results::{Bounds, Method, Summary};
+use mbint::results::{Bounds, Method, Summary};
 
 use crate::common::{load, model_files};
 

@@ -1,7 +1,7 @@
 //! Redundant constraints and singular starts: parallelograms.
 
-use mbint::inner::results::Method;
 use mbint::inner::study::{self, Options};
+use mbint::results::Method;
 
 use crate::common::runge_kutta::runge_kutta;
 use crate::common::{band, curve, output, read, run_methods};

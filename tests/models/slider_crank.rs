@@ -7,7 +7,7 @@
 use mbint::inner::methods::Taylor;
 use mbint::inner::model::Description;
 use mbint::inner::numerics::RangeKind;
-use mbint::inner::results::Method;
+use mbint::results::Method;
 
 use crate::common::measured::Case;
 use crate::common::{

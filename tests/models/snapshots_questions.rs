@@ -6,7 +6,7 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use mbint::inner::results::Summary;
+use mbint::results::Summary;
 
 use crate::common::{load_all, run_methods};
 

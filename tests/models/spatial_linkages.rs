@@ -181,7 +181,7 @@ simulation: { duration: 1, step: 1e-3, output_step: 0.01 }
     for name in formulas {
         let size = largest(curve(&fine[0], name).iter().copied());
         // The reactions' errors of the first steps (see `convergence`) have faded after 0.1 s.
-        let apart = |runs: &[mbint::inner::results::Bounds; 2]| {
+        let apart = |runs: &[mbint::results::Bounds; 2]| {
             let [planar, spatial] = runs.each_ref().map(|run| &curve(run, name)[row(run, 0.1)..]);
             largest(planar.iter().zip(spatial).map(|(a, b)| a - b))
         };

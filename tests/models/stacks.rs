@@ -3,10 +3,9 @@
 use std::path::Path;
 
 use mbint::inner::model::{Analysis, Description};
-use mbint::inner::results::{Method, OutputStatisticsSummary, Summary};
-use mbint::inner::study::{self, Options};
+use mbint::results::{Method, OutputStatisticsSummary, Summary};
 
-use crate::common::{band, load, output, read, run_methods};
+use crate::common::{band, load, model_of, output, read, run_methods};
 
 fn example(name: &str) -> Description {
     load(&Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("docs/examples/{name}.yaml")))
@@ -162,7 +161,7 @@ fn every_method_bounds_formulas_alone() {
 
 #[test]
 fn gradients_of_formulas_are_their_derivatives() {
-    let found = study::gradient(&read(PRODUCT), &Options::default()).unwrap();
+    let found = model_of(PRODUCT).gradients().unwrap();
     let by = |name: &str| {
         let index = found.parameters.iter().position(|parameter| parameter.name == name).unwrap();
         found.outputs[0].by_parameters[0][index]

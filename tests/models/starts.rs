@@ -1,10 +1,8 @@
 //! Starts that name what is no coordinate of the equations: points, bodies in joint coordinates, parts of angular
 //! velocities; and values that depend on t where they are prescribed. All against trigonometry or another method.
 
-use mbint::inner::study::{self, Options};
-
 use crate::common::dormand_prince::dormand_prince;
-use crate::common::{Vary, curve, distance, distance_from, largest, nominal, order, read};
+use crate::common::{Vary, curve, distance, distance_from, largest, nominal, order, ran, read, refused, study_of};
 
 /// Two bars that hang from the ground, 0.7 m and 0.5 m long, described by `formulation`, with this start.
 fn two_bars(formulation: &str, initial: &str) -> String {
@@ -68,8 +66,7 @@ fn a_start_names_a_body_in_joint_coordinates() {
 #[test]
 fn a_start_out_of_reach_names_its_entry() {
     for formulation in ["absolute", "joint"] {
-        let model = read(&two_bars(formulation, "{ lower.tip.x: 1.25, lower.tip.y: 0 }"));
-        let message = study::run(&model, Options::default()).expect_err("it is out of reach").to_string();
+        let message = refused(&two_bars(formulation, "{ lower.tip.x: 1.25, lower.tip.y: 0 }"));
         println!("{message}");
         assert!(message.contains("cannot be closed"), "{message}");
     }
@@ -242,7 +239,7 @@ outputs: {{ x: slider.x, push: C.force.x }}
 simulation: {{ duration: 0.1, step: 1e-3 }}
 "
     );
-    let message = study::run(&read(&text), Options::default()).expect_err("too much is fixed").to_string();
+    let message = refused(&text);
     println!("{message}");
     message
 }
@@ -279,7 +276,7 @@ simulation: {{ duration: 0.1, step: 1e-3 }}
 "
         )
     };
-    let message = study::run(&read(&spring("0.5")), Options::default()).expect_err("it has no direction").to_string();
+    let message = refused(&spring("0.5"));
     println!("{message}");
     assert!(message.contains("the direction of `rope`, whose points coincide"), "{message}");
     // Without a free length it is an ordinary spring, and the ball stays where it is.
@@ -394,8 +391,7 @@ simulation: {{ duration: 0.1, step: 1e-3 }}
 "
         )
         .replace("bodies: {", "bodies: { ground: { points: { high: [0, 0.2, 0.3] } },");
-        let options = Options { methods: Some(Vec::new()), ..Options::default() };
-        study::run(&read(&text), options).unwrap().1.shared_start
+        ran(study_of(&text).nominal()).1.shared_start
     };
     assert_eq!(shared("ground.high", "z"), Vec::<String>::new());
     // Here height and side share what the plane leaves open.
@@ -405,7 +401,7 @@ simulation: {{ duration: 0.1, step: 1e-3 }}
 /// Where a turntable moves, a ball on it may move along or spin.
 #[test]
 fn rotations_that_are_left_open_are_called_as_initial_calls_them() {
-    let description = read(
+    let study = study_of(
         "
 bodies: { table: { mass: 1, inertia: 1 }, ball: { mass: 1, inertia: 0.01 } }
 joints:
@@ -417,14 +413,14 @@ outputs: { x: ball.x }
 simulation: { duration: 0.1, step: 1e-3 }
 ",
     );
-    let shared = study::run(&description, Options::default()).unwrap().1.shared_start;
+    let shared = ran(study).1.shared_start;
     assert_eq!(shared, ["the rate of ball.y", "ball.omega"]);
 }
 
 /// A term of the constraints that is no number is told by the constraint that it is in.
 #[test]
 fn a_disc_that_lies_flat_has_no_lowest_point() {
-    let description = read(
+    let error = refused(
         "
 bodies: { disc: { mass: 1, inertia: 0.01 } }
 joints: { roll: { rolling_on_plane: { between: [ground, disc], axle: z, radius: 0.1 } } }
@@ -433,6 +429,5 @@ outputs: { x: disc.x }
 simulation: { duration: 0.1, step: 1e-3 }
 ",
     );
-    let error = study::run(&description, Options::default()).unwrap_err().to_string();
     assert!(error.contains("in `roll.along` is not a finite number"), "{error}");
 }

@@ -2,10 +2,9 @@
 
 use std::path::Path;
 
-use mbint::inner::results::{Bounds, Method, Verdict};
-use mbint::inner::study::{self, Options};
+use mbint::results::{Bounds, Method, Verdict};
 
-use crate::common::{load, nominal, read, run};
+use crate::common::{load, nominal, ran, read, refused, run, study_of};
 
 /// A model of the guide.
 pub fn example(name: &str) -> mbint::inner::model::Description {
@@ -34,7 +33,7 @@ pub fn close(found: f64, wanted: f64, tolerance: f64) {
 }
 
 fn why_not(text: &str) -> String {
-    study::run(&read(text), Options::default()).unwrap_err().to_string()
+    refused(text)
 }
 
 /// A bar on a hinge with a torsional spring, its weight m g at the distance c: k θ = −m g c cos θ.
@@ -128,7 +127,7 @@ effects: { weight: { gravity: { acceleration: [0, -9.81] } } }
 outputs: { angle: wheel.angle, fy: axle.force.y }
 simulation: { duration: 1, formulation: absolute }
 ";
-    let (bounds, summary) = study::run(&read(text), Options::default()).unwrap();
+    let (bounds, summary) = ran(study_of(text));
     assert_eq!(summary.analysis.unwrap().indifferent, ["wheel.angle"]);
     close(value(&bounds, "fy").abs(), 2.0 * 9.81, 1e-12);
 }
@@ -212,7 +211,7 @@ fn an_equilibrium_meets_requirements_with_their_closed_forms_margin() {
         "{}requirements: {{ high: angle >= -0.5 rad, low: {{ output: angle, max: -0.35 rad }} }}\n",
         hinged("joint", "{ value: 30, tolerance: 10% }", -0.3)
     );
-    let (bounds, summary) = study::run(&read(&text), Options::default()).unwrap();
+    let (bounds, summary) = ran(study_of(&text));
     let names: Vec<&str> = bounds.outputs.iter().map(|output| output.name.as_str()).collect();
     assert_eq!(names, ["angle", "fx", "fy", "stability"]);
     assert_eq!(summary.analysis.unwrap().values.len(), 4);
@@ -249,7 +248,7 @@ requirements: {{ open: gap >= 7.7 }}
 simulation: {{ duration: 1, output_step: 1 }}
 "
         );
-        let (bounds, summary) = study::run(&read(&text), Options::default()).unwrap();
+        let (bounds, summary) = ran(study_of(&text));
         let [lower, upper, error] = ends(&bounds, "gap", Method::Chebyshev);
         assert!(
             (lower - 7.76).abs() <= error + 1e-9 && (upper - 8.24).abs() <= error + 1e-9,

@@ -2,8 +2,8 @@
 //! Carlo of the simulation.
 
 use mbint::inner::model::{self, Description, Override, ParameterValue};
-use mbint::inner::results::{OutputStatistics, Summary, Uncertain};
 use mbint::inner::study::{self, Options};
+use mbint::results::{OutputStatistics, Summary, Uncertain};
 use symdiff::Formula;
 
 use crate::common::random::Random;

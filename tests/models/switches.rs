@@ -4,7 +4,7 @@
 use std::f64::consts::PI;
 
 use mbint::Model;
-use mbint::inner::results::{Bounds, Method};
+use mbint::results::{Bounds, Method};
 
 use crate::common::{Vary, band, curve, largest, nominal, output, read, run, run_methods};
 

@@ -1,8 +1,7 @@
 //! Tables in formulas: recorded excitations and measured characteristics.
 
-use crate::common::{band, curve, distance, nominal, output, read, run};
-use mbint::inner::model;
-use mbint::inner::results::Method;
+use crate::common::{band, curve, distance, load, nominal, output, read, run};
+use mbint::results::Method;
 use std::fmt::Write as _;
 
 /// A recording of a sine drives a mass as the sine itself does, but for what a spline of its samples leaves.
@@ -33,7 +32,7 @@ simulation: {{ duration: 3, step: 1e-3, output_step: 0.01 }}
     let run = |force: &str| {
         let path = folder.path().join("model.yaml");
         std::fs::write(&path, model_text(force)).unwrap();
-        nominal(&model::load(&path, &[]).unwrap_or_else(|diagnostics| panic!("{diagnostics}")))
+        nominal(&load(&path))
     };
     let table = run("amplitude*gust((t + late)/stretch)");
     let formula = run("amplitude*3*sin(2*(t + late)/stretch)");

@@ -3,7 +3,7 @@
 
 use std::f64::consts::PI;
 
-use mbint::inner::results::{Bounds, Method, Summary};
+use mbint::results::{Bounds, Method, Summary};
 
 use crate::common::dormand_prince::dormand_prince;
 use crate::common::{Vary, band, largest, output, read, run_methods};

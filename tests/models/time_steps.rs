@@ -3,7 +3,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use mbint::inner::results::{Bounds, Method, Summary};
+use mbint::results::{Bounds, Method, Summary};
 
 use crate::common::runge_kutta::runge_kutta;
 use crate::common::{Findings, band, output, read, run_methods};

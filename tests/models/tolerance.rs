@@ -2,7 +2,7 @@
 
 use mbint::inner::methods::{BoundsRequest, Budget, Chebyshev, Scan};
 use mbint::inner::model::{Description, ParameterValue};
-use mbint::inner::results::{Bounds, Method};
+use mbint::results::{Bounds, Method};
 
 use crate::common::runge_kutta::runge_kutta;
 use crate::common::{Vary, band, load, model, model_files, read, reference, run, run_methods};

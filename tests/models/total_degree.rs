@@ -1,7 +1,7 @@
 //! An order that is given for more parameters than a full grid can have, in every kind of analysis: a mass on fourteen
 //! springs side by side, whose stiffnesses count by their sum alone, so that ends are closed forms.
 
-use mbint::inner::results::Method;
+use mbint::results::Method;
 
 use crate::common::{read, run};
 

@@ -8,7 +8,7 @@
 use std::path::Path;
 
 use mbint::inner::model::{Description, load_str};
-use mbint::inner::results::{Bounds, Method};
+use mbint::results::{Bounds, Method};
 use nalgebra::{DMatrix, DVector};
 
 use crate::common::measured::Case;

@@ -1,6 +1,6 @@
 //! Zones of deviations: ends of linear outputs in them are known in closed form, and so are moments of their laws.
 
-use mbint::inner::results::{Method, OutputStatisticsSummary, Summary};
+use mbint::results::{Method, OutputStatisticsSummary, Summary};
 
 use crate::common::{band, output, read, run_methods};
 

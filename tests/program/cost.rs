@@ -6,10 +6,9 @@ use std::fs;
 use std::process::Command;
 use std::sync::Mutex;
 
+use mbint::Model;
 use mbint::inner::export::write_cost;
-use mbint::inner::model::load_str;
-use mbint::inner::results::CostStudy;
-use mbint::inner::study::{CostOptions, cost};
+use mbint::results::CostStudy;
 
 /// A mass on a spring that is known to 40 %: after a second the phases of its oscillations differ by four radians, so
 /// that bounds are reached at inner points of the interval.
@@ -196,14 +195,13 @@ fn a_study_keeps_its_budget() {
         )
         .replace("mass: 1,", "mass: m,")
         .replace("mass.x: 1,", "mass.x: x0,");
-    let model = load_str("oscillator", &more, &[]).unwrap();
-    let options =
-        CostOptions { tolerance: 1e-2, budget: 3.0, threads: Some(2), progress: &|_| (), interrupted: &|| false };
+    let model = Model::from_yaml_str("oscillator", &more).unwrap();
+    let (tolerance, budget) = (1e-2, 3.0);
     let begun = std::time::Instant::now();
-    let study = cost(&model, &options).unwrap();
+    let study = model.study().threads(2).cost(tolerance, budget).unwrap();
     let taken = begun.elapsed().as_secs_f64();
     // A run ends at the next row at which it is asked; the machine may do other things, too.
-    assert!(taken < 2.0 * options.budget, "{taken} s, {} s for the reference", study.reference_seconds);
+    assert!(taken < 2.0 * budget, "{taken} s, {} s for the reference", study.reference_seconds);
     assert!(study.left_out.iter().any(|line| line.contains("budget of 3 s")), "{:?}", study.left_out);
     assert!(study.has_reference() || study.bounds.is_empty());
 }
@@ -211,14 +209,13 @@ fn a_study_keeps_its_budget() {
 /// Interrupted half way, a study keeps what was measured, and whole runs only.
 #[test]
 fn what_is_measured_before_an_interruption_is_kept() {
-    let model = load_str("oscillator", OSCILLATOR, &[]).unwrap();
+    let model = Model::from_yaml_str("oscillator", OSCILLATOR).unwrap();
     let reached = Mutex::new(0.0_f64);
     let study = |until: f64| {
         *reached.lock().unwrap() = 0.0;
         let progress = |fraction: f64| *reached.lock().unwrap() = fraction;
         let interrupted = || *reached.lock().unwrap() >= until;
-        let (progress, interrupted) = (&progress, &interrupted);
-        cost(&model, &CostOptions { tolerance: 1e-2, budget: 60.0, threads: Some(2), progress, interrupted }).unwrap()
+        model.study().threads(2).progress(&progress).interrupted(&interrupted).cost(1e-2, 60.0).unwrap()
     };
     let [whole, half] = [f64::INFINITY, 0.6].map(study);
     let interrupted = |study: &CostStudy| study.left_out.iter().any(|line| line.contains("interrupted"));

@@ -3,6 +3,7 @@
 
 use std::path::Path;
 
+use mbint::Model;
 use mbint::inner::{model, study};
 
 const PAGE: &str = include_str!("../../docs/guides/effects.md");
@@ -36,9 +37,8 @@ fn the_examples_are_right() {
     let models = models();
     assert!(models.len() >= 8);
     for text in models {
-        let description =
-            model::load_str("effects.md", &text, &[]).unwrap_or_else(|report| panic!("{}", report.render(false)));
-        study::prepare(&description).unwrap_or_else(|error| panic!("{error}\n{text}"));
+        let model = Model::from_yaml_str("effects.md", &text).unwrap_or_else(|error| panic!("{error}"));
+        model.check().unwrap_or_else(|error| panic!("{error}\n{text}"));
     }
 }
 

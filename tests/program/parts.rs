@@ -4,8 +4,8 @@ use std::fs;
 use std::path::Path;
 
 use mbint::inner::model::{self, Description, Override, ParameterValue, Reading};
-use mbint::inner::results::{Bounds, Summary, Verdict};
 use mbint::inner::study::{self, Options};
+use mbint::results::{Bounds, Summary, Verdict};
 
 use super::place::Place;
 

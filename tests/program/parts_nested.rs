@@ -4,8 +4,8 @@ use std::fs;
 use std::path::Path;
 
 use mbint::inner::model::{self, Description, Override};
-use mbint::inner::results::Bounds;
 use mbint::inner::study::{self, Options};
+use mbint::results::Bounds;
 use nalgebra::{Matrix2, Matrix3, Quaternion, Rotation2, Rotation3, UnitQuaternion, Vector2, Vector3};
 
 #[track_caller]

@@ -1,14 +1,12 @@
 //! Instances that are placed and mirrored, against mechanisms that are written by hand, and against their images.
 
-use mbint::inner::model::{self, Description};
-use mbint::inner::results::Bounds;
-use mbint::inner::study::{self, Options};
+use mbint::Model;
+use mbint::results::Bounds;
 
 #[track_caller]
 fn bounds(text: &str) -> Bounds {
-    let reading = model::read_str("test.yaml", text, &[]);
-    let model: Description = reading.description.unwrap_or_else(|| panic!("{}", reading.diagnostics));
-    study::run(&model, Options::default()).unwrap().0
+    let model = Model::from_yaml_str("test.yaml", text).unwrap_or_else(|error| panic!("{error}"));
+    model.study().run().unwrap().bounds().clone()
 }
 
 /// The output's nominal course and its bounds.
@@ -397,11 +395,10 @@ fn a_place_has_tolerances() {
 outputs: {{ x: one.bar.x, y: two.bar.y }}
 {ASKED}"
     );
-    let model = model::load_str("test", &text, &[]).unwrap();
-    let names: Vec<&str> = model.uncertain().map(|(_, parameter)| parameter.name.as_str()).collect();
+    let model = Model::from_yaml_str("test", &text).unwrap();
+    let names: Vec<&str> = model.uncertain().map(|(name, _)| name).collect();
     assert_eq!(names, ["arm.l", "arm.m", "one.at.x"]);
-    let set = [model::Override::parse("two.at.x=0.2±0.01").unwrap()];
-    let model = model::load_str("test", &text, &set).unwrap();
+    let model = model.with("two.at.x", "0.2±0.01").unwrap();
     assert_eq!(model.uncertain().count(), 4);
 }
 

@@ -1,6 +1,6 @@
 //! What the README shows is so.
 
-use mbint::inner::{model, study};
+use mbint::Model;
 
 const README: &str = include_str!("../../README.md");
 
@@ -14,9 +14,7 @@ fn blocks(language: &str) -> impl Iterator<Item = &'static str> {
 fn the_models_are_right() {
     assert_eq!(blocks("yaml").count(), 1);
     for text in blocks("yaml") {
-        let description =
-            model::load_str("README.md", text, &[]).unwrap_or_else(|report| panic!("{}", report.render(false)));
-        study::prepare(&description).unwrap();
+        Model::from_yaml_str("README.md", text).unwrap_or_else(|error| panic!("{error}")).check().unwrap();
     }
 }
 

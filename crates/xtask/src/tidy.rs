@@ -27,7 +27,7 @@ const RULES: [Rule; 6] = [
 ];
 
 /// Limits of all rules but the last.
-const LIMITS: [usize; 5] = [0, 60, 21, 172, 14];
+const LIMITS: [usize; 5] = [0, 60, 21, 172, 11];
 
 /// The rules that see more than a line.
 const HOMONYMS: usize = 4;

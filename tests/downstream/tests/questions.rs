@@ -49,6 +49,35 @@ fn bounds_verdicts_and_statistics_of_a_stack_are_those_of_sums() {
 }
 
 #[test]
+fn a_model_is_checked_and_explained_before_it_runs() {
+    stack().check().unwrap();
+    let explanation = stack().explain().unwrap();
+    assert_eq!(explanation.coordinates.len(), 1, "{explanation:?}");
+    // A bar of 1 m does not reach over 3 m.
+    let apart = "
+bodies: { bar: { mass: 1, inertia: 1, points: { left: [-0.5, 0], right: [0.5, 0] } }, ground: { points: { far: [3, 0] } } }
+joints: { one: { revolute: [ground, bar.left] }, two: { revolute: [ground.far, bar.right] } }
+outputs: { angle: bar.angle }
+simulation: { duration: 1, step: 0.1 }
+";
+    let error = Model::from_yaml_str("apart.yaml", apart).unwrap().check().unwrap_err();
+    assert!(matches!(error, Error::Run(_)), "{error}");
+}
+
+#[test]
+fn the_nominal_motion_alone_has_no_bands() {
+    let result = stack().study().nominal().run().unwrap();
+    let gap = result.output("gap").unwrap();
+    near(gap.nominal()[0], 1e-3);
+    assert_eq!(gap.bands().count(), 0);
+    assert!(result.statistics().is_none());
+    assert_eq!(result.bounds().outputs.len(), 1);
+    // A method that is chosen afterwards is run.
+    let result = stack().study().nominal().chebyshev(1).run().unwrap();
+    assert!(result.output("gap").unwrap().band(Method::Chebyshev).is_some());
+}
+
+#[test]
 fn tolerances_that_meet_requirements_fill_the_margin() {
     let found = stack().study().allocate(Criterion::WorstCase, 3.0).unwrap();
     assert!(found.is_confirmed && found.not_met.is_empty());

@@ -4,7 +4,7 @@
 use std::fmt::Write as _;
 
 use mbint::inner::model::Description;
-use mbint::inner::results::Bounds;
+use mbint::results::Bounds;
 
 use crate::common::measured::Case;
 use crate::common::{Findings, Vary, curve, largest, model, nominal, order, read, reference, row, run_methods};

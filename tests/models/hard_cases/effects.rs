@@ -3,7 +3,7 @@
 
 use mbint::inner::methods::{BoundsRequest, Chebyshev, Scan};
 use mbint::inner::model::Description;
-use mbint::inner::results::Method;
+use mbint::results::Method;
 
 use crate::common::dormand_prince::dormand_prince;
 use crate::common::restitution::restitution;

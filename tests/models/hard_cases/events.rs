@@ -3,8 +3,8 @@
 
 use std::f64::consts::PI;
 
-use mbint::inner::results::Method;
 use mbint::inner::study::{self, Options};
+use mbint::results::Method;
 
 use crate::common::{Vary, largest, read, run_methods};
 

@@ -1,9 +1,6 @@
 //! Positions that are hard: dead centres, change points, toggles, and those where a mechanism locks.
 
-use mbint::inner::results::Method;
-use mbint::inner::study::{self, Options};
-
-use crate::common::{Vary, curve, largest, nominal, order, read, run_methods};
+use crate::common::{Vary, curve, largest, nominal, order, ran, read, run_methods, study_of};
 
 /// A four-bar linkage with a driven crank of `crank` m, on a base of 0.4 m, with coupler and rocker of 0.2 m and 0.25
 /// m.
@@ -29,8 +26,7 @@ simulation: {{ duration: 4, {stepping}, output_step: 0.01 }}
 }
 
 fn failure(text: &str) -> String {
-    let options = Options { methods: Some(Vec::<Method>::new()), threads: Some(2), ..Options::default() };
-    study::run(&read(text), options).unwrap().1.failure.expect("the mechanism cannot go on")
+    ran(study_of(text).nominal()).1.failure.expect("the mechanism cannot go on")
 }
 
 /// The crank of 0.3 m cannot turn: coupler and rocker are stretched where B is 0.45 m from D,

@@ -1,6 +1,6 @@
 //! The laws.
 
-use mbint::inner::results::Bounds;
+use mbint::results::Bounds;
 use proptest::prelude::*;
 use proptest::test_runner::{Config, TestRunner};
 

@@ -2,9 +2,8 @@
 
 use std::fmt::Write as _;
 
-use mbint::inner::model;
-use mbint::inner::results::Bounds;
-use mbint::inner::study::{self, Options};
+use mbint::Model;
+use mbint::results::Bounds;
 
 use super::mechanism::Mechanism;
 use super::quaternion::{Quaternion, Vector, add};
@@ -182,12 +181,11 @@ impl Scene {
     /// The motion.
     pub fn run(&self, mechanism: &Mechanism) -> Bounds {
         let text = self.write(mechanism);
-        let description =
-            model::load_str("drawn", &text, &[]).unwrap_or_else(|diagnostics| panic!("{text}\n{diagnostics}"));
-        let options = Options { methods: Some(Vec::new()), threads: Some(1), ..Options::default() };
-        let (bounds, summary) = study::run(&description, options).unwrap_or_else(|error| panic!("{text}\n{error}"));
-        assert_eq!(summary.failure, None, "{text}");
-        bounds
+        let model = Model::from_yaml_str("drawn", &text);
+        let run = |model: Model| model.study().nominal().threads(1).run();
+        let result = model.and_then(run).unwrap_or_else(|error| panic!("{text}\n{error}"));
+        assert_eq!(result.failure(), None, "{text}");
+        result.bounds().clone()
     }
 }
 

@@ -5,7 +5,7 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use mbint::inner::{model, study};
+use mbint::Model;
 
 use super::{docs, expect_page};
 
@@ -72,11 +72,13 @@ fn the_instructions_of_shipped_models_are_those_of_the_page() {
     let mut steps = Vec::new();
     for file in shipped() {
         let name = file.file_name().unwrap().to_string_lossy();
-        let reading = model::read(&file, &[]);
-        let models = reading.chosen(&[]).unwrap();
-        assert!(!models.is_empty(), "{name} cannot be read");
-        for (scene, description) in models {
-            let explanation = study::explain(&description).unwrap_or_else(|error| panic!("{name}: {error}"));
+        let model = Model::from_file(&file).unwrap_or_else(|error| panic!("{error}"));
+        let scenes: Vec<String> = model.scenes().map(str::to_owned).collect();
+        let scenes: Vec<Option<String>> =
+            if scenes.is_empty() { vec![None] } else { scenes.into_iter().map(Some).collect() };
+        for scene in scenes {
+            let model = scene.iter().fold(model.clone(), |model, scene| model.scene(scene).unwrap());
+            let explanation = model.explain().unwrap_or_else(|error| panic!("{name}: {error}"));
             let called = scene.map_or_else(|| name.to_string(), |scene| format!("{name}, {scene}"));
             let (coordinates, matrix) = (explanation.coordinates.len(), explanation.newton.size);
             write!(page, "| {called} | {coordinates} | {matrix} |").unwrap();

@@ -6,7 +6,7 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use mbint::inner::{model, study};
+use mbint::Model;
 
 mod gallery;
 mod instructions;
@@ -110,8 +110,8 @@ fn models_of_pages_with_a_button_can_be_read() {
         let has = |text: &str, key: &str| text.lines().any(|line| line.starts_with(key));
         let has_button = |text: &&str| has(text, "model:") && has(text, "outputs:") && !is_mistaken(text);
         for text in blocks(&page, "yaml").into_iter().filter(has_button) {
-            let reading = model::read_str(name.to_str().unwrap(), text, &[]);
-            assert!(reading.description.is_some(), "{}: {}", file.display(), reading.diagnostics.render(false));
+            let model = Model::from_yaml_str(name.to_str().unwrap(), text);
+            assert!(model.is_ok(), "{}: {model:?}", file.display());
             count += 1;
         }
     }
@@ -143,9 +143,8 @@ fn the_examples_can_be_assembled() {
     assert!(!files.is_empty());
     for file in files {
         let text = std::fs::read_to_string(&file).unwrap();
-        let description =
-            model::load_str(&file.display().to_string(), &text, &[]).unwrap_or_else(|e| panic!("{}", e.render(false)));
-        study::prepare(&description).unwrap();
+        let model = Model::from_yaml_str(&file.display().to_string(), &text).unwrap_or_else(|error| panic!("{error}"));
+        model.check().unwrap_or_else(|error| panic!("{}: {error}", file.display()));
     }
 }
 

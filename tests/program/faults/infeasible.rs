@@ -2,9 +2,9 @@
 
 use mbint::inner::export::bounds_csv;
 use mbint::inner::model::{self, Description};
-use mbint::inner::results::Summary;
-use mbint::inner::results::{Band, Bounds, Method};
 use mbint::inner::study::{self, Options};
+use mbint::results::Summary;
+use mbint::results::{Band, Bounds, Method};
 
 fn read(text: &str) -> Description {
     model::load_str("test", text, &[]).unwrap_or_else(|diagnostics| panic!("{diagnostics}"))

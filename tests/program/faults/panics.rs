@@ -2,9 +2,8 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use mbint::inner::model;
-use mbint::inner::results::Method;
-use mbint::inner::study::{self, Options};
+use mbint::Model;
+use mbint::results::Method;
 
 use crate::place::Place;
 
@@ -21,16 +20,16 @@ bounds: { chebyshev: { order: 2 }, taylor: { order: 2 }, scan: { points: 4 } }
 ";
 
 /// A run in which what is called for progress panics once, at the first report beyond a fraction.
-fn with_one_panic(text: &str, beyond: f64) -> (mbint::inner::results::Bounds, mbint::inner::results::Summary) {
-    let description = model::load_str("test", text, &[]).unwrap_or_else(|wrong| panic!("{wrong}"));
+fn with_one_panic(text: &str, beyond: f64) -> (mbint::results::Bounds, mbint::results::Summary) {
+    let model = Model::from_yaml_str("test", text).unwrap_or_else(|error| panic!("{error}"));
     let panicked = AtomicBool::new(false);
     let progress = |fraction: f64| {
         if fraction > beyond && !panicked.swap(true, Ordering::SeqCst) {
             panic!("on purpose");
         }
     };
-    let options = Options { threads: Some(2), progress: &progress, ..Options::default() };
-    study::run(&description, options).unwrap_or_else(|error| panic!("{error}"))
+    let result = model.study().threads(2).progress(&progress).run().unwrap_or_else(|error| panic!("{error}"));
+    (result.bounds().clone(), result.summary().clone())
 }
 
 #[test]

@@ -1,8 +1,8 @@
 //! Intervals without width, parameters of very different sizes, bifurcations.
 
 use mbint::inner::model::{self, Description};
-use mbint::inner::results::{Bounds, Method};
 use mbint::inner::study::{self, Options};
+use mbint::results::{Bounds, Method};
 
 fn read(text: &str) -> Description {
     model::load_str("test", text, &[]).unwrap_or_else(|diagnostics| panic!("{diagnostics}"))

@@ -1,6 +1,6 @@
 //! Schedules of the same rows with more steps, by which errors are told.
 
-use super::schedule::{LastSteps, Schedule, Steps};
+use super::schedule::{LastSteps, Schedule, StepList};
 use super::tuning::TUNING;
 use crate::simulate::events::segments::divided;
 
@@ -16,7 +16,7 @@ fn are_coprime(a: usize, b: usize) -> bool {
 
 /// The same for steps of which some ends are kept; `others` says how many there are between two of these instead of so
 /// many.
-fn divided_between(ends: &[f64], kept: &[usize], others: impl Fn(usize) -> usize) -> Steps {
+fn divided_between(ends: &[f64], kept: &[usize], others: impl Fn(usize) -> usize) -> StepList {
     let mut divisions = Vec::new();
     let mut still = Vec::with_capacity(kept.len());
     let mut times = vec![0.0];
@@ -31,7 +31,7 @@ fn divided_between(ends: &[f64], kept: &[usize], others: impl Fn(usize) -> usize
             times = vec![end];
         }
     }
-    Steps::Passing { ends: divisions, kept: still }
+    StepList::Passing { ends: divisions, kept: still }
 }
 
 impl Schedule {
@@ -39,7 +39,7 @@ impl Schedule {
     #[must_use]
     pub fn refined(&self, parts: usize) -> Self {
         let steps = match &self.steps {
-            Steps::Fixed { step, per_row, last } => Steps::Fixed {
+            StepList::Fixed { step, per_row, last } => StepList::Fixed {
                 step: step / parts as f64,
                 per_row: per_row * parts,
                 last: LastSteps {
@@ -48,9 +48,9 @@ impl Schedule {
                     rest: last.rest / parts as f64,
                 },
             },
-            Steps::Passing { ends, kept } => divided_between(ends, kept, |count| count * parts),
-            Steps::Segmented(segments) => Steps::Segmented(segments.with_steps(|count| count * parts)),
-            Steps::Listed(ends) => {
+            StepList::Passing { ends, kept } => divided_between(ends, kept, |count| count * parts),
+            StepList::Segmented(segments) => StepList::Segmented(segments.with_steps(|count| count * parts)),
+            StepList::Listed(ends) => {
                 let refine = |row: usize| {
                     self.steps_to(row)
                         .flat_map(|(h, end)| {
@@ -58,7 +58,7 @@ impl Schedule {
                         })
                         .collect()
                 };
-                Steps::Listed((1..=ends.len()).map(refine).collect())
+                StepList::Listed((1..=ends.len()).map(refine).collect())
             }
         };
         Self { steps, ..*self }
@@ -69,16 +69,16 @@ impl Schedule {
     #[must_use]
     pub fn at_odds(&self) -> Self {
         let steps = match &self.steps {
-            Steps::Fixed { .. } => return self.with_steps_per_row(odd_to(self.steps_per_row().unwrap_or(1))),
-            Steps::Passing { ends, kept } => divided_between(ends, kept, odd_to),
-            Steps::Segmented(segments) => Steps::Segmented(segments.with_steps(odd_to)),
-            Steps::Listed(ends) => {
+            StepList::Fixed { .. } => return self.with_steps_per_row(odd_to(self.steps_per_row().unwrap_or(1))),
+            StepList::Passing { ends, kept } => divided_between(ends, kept, odd_to),
+            StepList::Segmented(segments) => StepList::Segmented(segments.with_steps(odd_to)),
+            StepList::Listed(ends) => {
                 let of_row = |row: usize| {
                     let mut times = vec![self.time(row - 1)];
                     times.extend(&ends[row - 1]);
                     divided(&times, odd_to(times.len() - 1)).collect()
                 };
-                Steps::Listed((1..=ends.len()).map(of_row).collect())
+                StepList::Listed((1..=ends.len()).map(of_row).collect())
             }
         };
         Self { steps, ..*self }

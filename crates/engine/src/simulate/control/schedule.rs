@@ -18,13 +18,13 @@ pub struct Schedule {
     pub rows: usize,
     /// Time of the last row, s.
     pub(super) end: f64,
-    pub(super) steps: Steps,
+    pub(super) steps: StepList,
     /// How the steps are taken.
     pub integration: Integration,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) enum Steps {
+pub(super) enum StepList {
     /// This many steps of equal length between rows, and those before the last row.
     Fixed { step: f64, per_row: usize, last: LastSteps },
     /// For each row but the first, the times at which the steps before it end; the last is the row's own.
@@ -75,46 +75,46 @@ impl Schedule {
         } else {
             LastSteps::new(before, step)
         };
-        Self { output_step, rows, end, steps: Steps::Fixed { step, per_row, last }, integration: Integration::Plain }
+        Self { output_step, rows, end, steps: StepList::Fixed { step, per_row, last }, integration: Integration::Plain }
     }
 
     /// Steps that end at the listed times: one list for each row but the first.
     pub fn listed(output_step: f64, ends: Vec<Vec<f64>>) -> Self {
         let end = ends.last().and_then(|ends| ends.last()).copied().unwrap_or(0.0);
-        Self { output_step, rows: ends.len() + 1, end, steps: Steps::Listed(ends), integration: Integration::Plain }
+        Self { output_step, rows: ends.len() + 1, end, steps: StepList::Listed(ends), integration: Integration::Plain }
     }
 
     /// Steps that end at the listed times, whatever rows lie between. The ends by the numbers `kept` stay where they
     /// are in all schedules that are made of this one.
     pub fn passing(duration: f64, output_step: f64, ends: Vec<f64>, kept: Vec<usize>) -> Self {
         let rows = rows(duration, output_step);
-        let steps = Steps::Passing { ends, kept };
+        let steps = StepList::Passing { ends, kept };
         Self { output_step, rows, end: duration, steps, integration: Integration::Plain }
     }
 
     /// Steps between the events that all samples meet.
     pub fn segmented(duration: f64, output_step: f64, segments: Segments) -> Self {
-        let (rows, steps) = (rows(duration, output_step), Steps::Segmented(segments));
+        let (rows, steps) = (rows(duration, output_step), StepList::Segmented(segments));
         Self { output_step, rows, end: duration, steps, integration: Integration::Segments }
     }
 
     /// The events between which steps are taken, with these, where they are.
     pub fn segments(&self) -> Option<&Segments> {
         match &self.steps {
-            Steps::Segmented(segments) => Some(segments),
+            StepList::Segmented(segments) => Some(segments),
             _ => None,
         }
     }
 
     /// Whether steps pass over rows.
     pub fn passes_rows(&self) -> bool {
-        matches!(self.steps, Steps::Passing { .. } | Steps::Segmented(_))
+        matches!(self.steps, StepList::Passing { .. } | StepList::Segmented(_))
     }
 
     /// The same with steps that end at the rows too.
     #[must_use]
     pub fn ending_at_rows(&self) -> Self {
-        let Steps::Passing { .. } = &self.steps else { return self.clone() };
+        let StepList::Passing { .. } = &self.steps else { return self.clone() };
         let of_row = |row: usize| {
             let mut ends: Vec<f64> = self.steps_to(row).map(|(_, end)| end).collect();
             if ends.last().is_none_or(|&end| end < self.time(row)) {
@@ -128,7 +128,7 @@ impl Schedule {
     /// Times at which all steps end.
     pub fn ends(&self) -> Vec<f64> {
         match &self.steps {
-            Steps::Passing { ends, .. } => ends.clone(),
+            StepList::Passing { ends, .. } => ends.clone(),
             _ => (1..self.rows).flat_map(|row| self.steps_to(row)).map(|(_, end)| end).collect(),
         }
     }
@@ -136,21 +136,23 @@ impl Schedule {
     /// The longest of the steps, s.
     pub fn longest_step(&self) -> f64 {
         match &self.steps {
-            Steps::Fixed { step, .. } => *step,
-            Steps::Listed(_) => (1..self.rows).flat_map(|row| self.steps_to(row)).map(|(h, _)| h).fold(0.0, f64::max),
-            Steps::Passing { ends, .. } => {
+            StepList::Fixed { step, .. } => *step,
+            StepList::Listed(_) => {
+                (1..self.rows).flat_map(|row| self.steps_to(row)).map(|(h, _)| h).fold(0.0, f64::max)
+            }
+            StepList::Passing { ends, .. } => {
                 let first = ends.first().copied().unwrap_or(0.0);
                 ends.windows(2).map(|pair| pair[1] - pair[0]).fold(first, f64::max)
             }
-            Steps::Segmented(segments) => self.end / segments.count() as f64,
+            StepList::Segmented(segments) => self.end / segments.count() as f64,
         }
     }
 
     /// Number of steps between rows, if all steps but those before the last row have one length.
     pub fn steps_per_row(&self) -> Option<usize> {
         match &self.steps {
-            Steps::Fixed { per_row, .. } => Some(*per_row),
-            Steps::Listed(_) | Steps::Passing { .. } | Steps::Segmented(_) => None,
+            StepList::Fixed { per_row, .. } => Some(*per_row),
+            StepList::Listed(_) | StepList::Passing { .. } | StepList::Segmented(_) => None,
         }
     }
 
@@ -190,11 +192,11 @@ impl Schedule {
     /// The first step's length, s.
     pub fn first_step(&self) -> f64 {
         match &self.steps {
-            Steps::Fixed { last, .. } if self.rows == 2 && last.whole == 0 => last.rest,
-            Steps::Fixed { step, .. } => *step,
-            Steps::Listed(ends) => ends.first().and_then(|ends| ends.first()).copied().unwrap_or(self.output_step),
-            Steps::Passing { ends, .. } => ends.first().copied().unwrap_or(self.output_step),
-            Steps::Segmented(_) => self.longest_step(),
+            StepList::Fixed { last, .. } if self.rows == 2 && last.whole == 0 => last.rest,
+            StepList::Fixed { step, .. } => *step,
+            StepList::Listed(ends) => ends.first().and_then(|ends| ends.first()).copied().unwrap_or(self.output_step),
+            StepList::Passing { ends, .. } => ends.first().copied().unwrap_or(self.output_step),
+            StepList::Segmented(_) => self.longest_step(),
         }
     }
 
@@ -202,43 +204,43 @@ impl Schedule {
     pub fn steps_to(&self, row: usize) -> impl Iterator<Item = (f64, f64)> {
         let count = match &self.steps {
             _ if row == 0 => 0,
-            Steps::Fixed { last, .. } if row + 1 == self.rows => last.whole + last.rests,
-            Steps::Fixed { per_row, .. } => *per_row,
-            Steps::Listed(ends) => ends[row - 1].len(),
-            Steps::Passing { .. } => self.steps_before(row) - self.steps_before(row - 1),
-            Steps::Segmented(_) => 0,
+            StepList::Fixed { last, .. } if row + 1 == self.rows => last.whole + last.rests,
+            StepList::Fixed { per_row, .. } => *per_row,
+            StepList::Listed(ends) => ends[row - 1].len(),
+            StepList::Passing { .. } => self.steps_before(row) - self.steps_before(row - 1),
+            StepList::Segmented(_) => 0,
         };
         (0..count).map(move |index| match &self.steps {
-            Steps::Fixed { last, .. } if row + 1 == self.rows && index >= last.whole => {
+            StepList::Fixed { last, .. } if row + 1 == self.rows && index >= last.whole => {
                 (last.rest, self.end - (last.whole + last.rests - index - 1) as f64 * last.rest)
             }
-            Steps::Fixed { step, per_row, .. } => (*step, ((row - 1) * per_row + index + 1) as f64 * step),
-            Steps::Listed(ends) => {
+            StepList::Fixed { step, per_row, .. } => (*step, ((row - 1) * per_row + index + 1) as f64 * step),
+            StepList::Listed(ends) => {
                 let before = if index == 0 { self.time(row - 1) } else { ends[row - 1][index - 1] };
                 (ends[row - 1][index] - before, ends[row - 1][index])
             }
-            Steps::Passing { ends, .. } => {
+            StepList::Passing { ends, .. } => {
                 let place = self.steps_before(row - 1) + index;
                 let before = if place == 0 { 0.0 } else { ends[place - 1] };
                 (ends[place] - before, ends[place])
             }
-            Steps::Segmented(_) => (0.0, self.end),
+            StepList::Segmented(_) => (0.0, self.end),
         })
     }
 
     /// Number of steps up to a row; of those between events, the row's share of all.
     pub fn steps_before(&self, row: usize) -> usize {
         match &self.steps {
-            Steps::Fixed { per_row, last, .. } if row > 0 && row + 1 == self.rows => {
+            StepList::Fixed { per_row, last, .. } if row > 0 && row + 1 == self.rows => {
                 (row - 1) * per_row + last.whole + last.rests
             }
-            Steps::Fixed { per_row, .. } => row * per_row,
-            Steps::Listed(ends) => ends[..row].iter().map(Vec::len).sum(),
-            Steps::Passing { ends, .. } => {
+            StepList::Fixed { per_row, .. } => row * per_row,
+            StepList::Listed(ends) => ends[..row].iter().map(Vec::len).sum(),
+            StepList::Passing { ends, .. } => {
                 let time = self.time(row);
                 ends.partition_point(|&end| end <= time)
             }
-            Steps::Segmented(segments) => segments.count() * row / (self.rows - 1).max(1),
+            StepList::Segmented(segments) => segments.count() * row / (self.rows - 1).max(1),
         }
     }
 }

@@ -20,7 +20,7 @@ use crate::grammar::{Checked, Fields, JointCoordinate, MeshKind, OnJoint, Reader
 use crate::syntax::codes::Code;
 use crate::multibody::{BuildError, Vector};
 
-use super::teeth::{self, Flanks, Mesh, ToothForce};
+use super::teeth::{self, ToothContact, Mesh, ToothForce};
 use super::{Joint, JointElement, Kinematics, Row, RowDocs, Rows, Toothed};
 
 /// Angles in a fixed ratio: angle of the second = ratio * angle of the first + offset.
@@ -46,7 +46,7 @@ pub struct Gear {
     offset: Formula,
     /// How teeth touch.
     #[group]
-    flanks: Flanks,
+    flanks: ToothContact,
     /// From the point where the axes intersect to the middle of the teeth of bevel gears.
     #[quantity(unit = "m", positive, constant)]
     cone_distance: Option<Formula>,
@@ -56,7 +56,7 @@ impl Gear {
     /// Of which no teeth are known.
     pub fn of(between: [Rotating; 2], ratio: f64, offset: f64) -> Self {
         let (ratio, offset) = (Formula::number(ratio), Formula::number(offset));
-        Self { between, ratio, offset, flanks: Flanks::unknown(), cone_distance: None }
+        Self { between, ratio, offset, flanks: ToothContact::unknown(), cone_distance: None }
     }
 }
 

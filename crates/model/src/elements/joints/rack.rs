@@ -17,7 +17,7 @@ use crate::elements::meshing::{Member, Meshing};
 use crate::grammar::{Checked, JointCoordinate, MeshKind, OnJoint, SlidingJoint, RotatingJoint};
 use crate::multibody::{BuildError, Vector};
 
-use super::teeth::{self, Flanks, Mesh, ToothForce};
+use super::teeth::{self, ToothContact, Mesh, ToothForce};
 use super::{Joint, JointElement, Kinematics, Row, RowDocs, Rows, Toothed};
 
 /// A displacement in a fixed ratio to an angle: displacement of the rack = radius * angle of the pinion + offset.
@@ -45,7 +45,7 @@ pub struct Rack {
     offset: Formula,
     /// How teeth touch.
     #[group]
-    flanks: Flanks,
+    flanks: ToothContact,
 }
 
 impl Checked for Rack {

@@ -45,7 +45,7 @@ pub(super) const PRESSURE: Requirement = Requirement {
 /// How teeth touch.
 #[derive(Clone, Debug, Element)]
 #[element(checked)]
-pub struct Flanks {
+pub struct ToothContact {
     /// Of the teeth across their direction, e.g. `20 deg`: then bearings feel the teeth.
     #[quantity(unit = "rad", constant, requires = PRESSURE)]
     #[key(otherwise = "the torque alone is known, and bearings that the teeth push on have no known reactions")]
@@ -60,14 +60,14 @@ pub struct Flanks {
     pub face: Formula,
 }
 
-impl Flanks {
+impl ToothContact {
     /// Those of which nothing is known.
     pub fn unknown() -> Self {
         Self { pressure_angle: None, helix_angle: Formula::number(0.0), face: Formula::number(0.0) }
     }
 }
 
-impl Checked for Flanks {
+impl Checked for ToothContact {
     fn check_keys<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: &Fields<'_>) {
         for key in ["helix_angle", "face"] {
             if fields.get(key).is_some() && fields.get("pressure_angle").is_none() {
@@ -175,7 +175,7 @@ impl<'g, 'k> Mesh<'g, 'k> {
         &self,
         ratio: Scalar<'g>,
         cone_distance: Option<Scalar<'g>>,
-        flanks: &Flanks,
+        flanks: &ToothContact,
         lambda: Scalar<'g>,
     ) -> Result<ToothForce<'g>, BuildError> {
         let [first, second] = self.toothed;
@@ -210,7 +210,7 @@ impl<'g, 'k> Mesh<'g, 'k> {
     }
 
     /// The pitch point of parallel axes; `ratio` counts both angles about the first.
-    fn between_parallel(&self, ratio: Scalar<'g>, flanks: &Flanks) -> Result<Vector<'g>, BuildError> {
+    fn between_parallel(&self, ratio: Scalar<'g>, flanks: &ToothContact) -> Result<Vector<'g>, BuildError> {
         let [first, second] = self.toothed;
         let offset = second.center - first.center;
         let offset = offset - offset.dot(first.axis) * first.axis;
@@ -250,7 +250,7 @@ impl<'g, 'k> Mesh<'g, 'k> {
     pub fn of_rack(
         &self,
         radius: Scalar<'g>,
-        flanks: &Flanks,
+        flanks: &ToothContact,
         lambda: Scalar<'g>,
     ) -> Result<ToothForce<'g>, BuildError> {
         let [pinion, rack] = self.toothed;
@@ -275,7 +275,7 @@ impl<'g, 'k> Mesh<'g, 'k> {
     fn force(
         &self,
         pitch: &Pitch<'g>,
-        flanks: &Flanks,
+        flanks: &ToothContact,
         efforts: [Scalar<'g>; 2],
     ) -> Result<ToothForce<'g>, BuildError> {
         let k = self.k;
