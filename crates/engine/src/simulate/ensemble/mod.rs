@@ -12,6 +12,7 @@ mod run;
 mod switch_extents;
 mod tiling;
 pub(crate) mod tuning;
+mod watches;
 
 pub(crate) use extrapolated::weights;
 pub use extrapolated::{ExtrapolatedJets, ExtrapolatedRun};

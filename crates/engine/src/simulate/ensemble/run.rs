@@ -6,8 +6,8 @@ use super::lane_steps::LaneSteps;
 use super::observed::{Observed, Stop};
 use super::reduction::{Accumulator, Channel};
 use super::row_accelerations::RowAccelerations;
-use super::switch_extents::SwitchExtents;
 use super::tiling::{put_lanes, tiles};
+use super::watches::{StepTaken, Watches};
 use crate::compile::Tapes;
 use crate::numerics::Sample;
 use crate::simulate::control::{Schedule, Steps};
@@ -15,7 +15,6 @@ use crate::simulate::diagnostics::{
     OpenConstraint, OverlapWatch, PartingWatch, SingularPass, SingularWatch, TooDeep, not_finite,
 };
 use crate::simulate::error::SimulationError;
-use crate::simulate::features::FeatureWatch;
 use crate::simulate::integrator::Integrator;
 use crate::simulate::interruption::Interruption;
 use crate::simulate::sampling::{Instants, Sampling};
@@ -47,19 +46,11 @@ struct TileRun<'s> {
     /// The first row before which a lane's local errors add up to more than the tolerance, or its steps pass over a
     /// feature.
     beyond: Option<usize>,
-    /// Where switches are observed.
-    switches: Option<SwitchExtents<'s>>,
-    /// Without a tolerance: whether steps pass over what forces do in space.
-    features: Option<FeatureWatch<'s>>,
-    /// Where surfaces may overlap to some depth only.
-    overlaps: Option<OverlapWatch<'s>>,
+    watches: Watches<'s>,
     /// Whether the first rows were advanced to.
     begun: bool,
     /// The first of the samples that stopped, and its state at the beginning of the failed step.
     stopped: Option<(usize, Vec<f64>)>,
-    /// Search for singular configurations of the first lane.
-    watch: Option<SingularWatch<'s>>,
-    parting: Option<PartingWatch<'s>>,
     /// Where outputs are reduced to one number.
     reduction: Option<Accumulator<'s>>,
     interruption: Interruption<'s>,
@@ -93,13 +84,12 @@ impl<'s> EnsembleRun<'s> {
                     count,
                     lanes: None,
                     beyond: None,
-                    switches: None,
-                    features: None,
-                    overlaps: simulator.overlaps().map(|program| OverlapWatch::new(program, &stepper)),
+                    watches: Watches {
+                        overlaps: simulator.overlaps().map(|program| OverlapWatch::new(program, &stepper)),
+                        ..Watches::default()
+                    },
                     stepper,
                     stopped: None,
-                    watch: None,
-                    parting: None,
                     reduction: None,
                     interruption: Interruption::default(),
                     is_cut: false,
@@ -121,8 +111,9 @@ impl<'s> EnsembleRun<'s> {
 impl<'s> Integrator<'s> for EnsembleRun<'s> {
     fn watch(&mut self) {
         if let Some(tile) = self.tiles.first_mut() {
-            tile.watch = Some(SingularWatch::new(self.simulator, &tile.stepper));
-            tile.parting = PartingWatch::new(self.simulator, &self.simulator.program.layout, tile.stepper.lane(0));
+            let layout = &self.simulator.program.layout;
+            tile.watches.singular = Some(SingularWatch::new(self.simulator, &tile.stepper));
+            tile.watches.parting = PartingWatch::new(self.simulator, layout, tile.stepper.lane(0));
         }
     }
 
@@ -183,11 +174,11 @@ impl<'s> Integrator<'s> for EnsembleRun<'s> {
     }
 
     fn singular_passes(&self) -> Vec<SingularPass> {
-        self.tiles.iter().filter_map(|tile| tile.watch.as_ref()).flat_map(SingularWatch::passes).collect()
+        self.tiles.iter().filter_map(|tile| tile.watches.singular.as_ref()).flat_map(SingularWatch::passes).collect()
     }
 
     fn parted(&self) -> Option<SimulationError> {
-        self.tiles.iter().find_map(|tile| tile.parting.as_ref()?.error())
+        self.tiles.iter().find_map(|tile| tile.watches.parting.as_ref()?.error())
     }
 
     fn open_constraint(&self, stop: &Stop, schedule: &Schedule) -> Option<OpenConstraint> {
@@ -203,7 +194,7 @@ impl<'s> Integrator<'s> for EnsembleRun<'s> {
     }
 
     fn too_deep(&self) -> Option<TooDeep> {
-        let found = self.tiles.iter().filter_map(|tile| tile.overlaps.as_ref()?.found());
+        let found = self.tiles.iter().filter_map(|tile| tile.watches.overlaps.as_ref()?.found());
         found.min_by(|a, b| a.time.total_cmp(&b.time))
     }
 
@@ -231,13 +222,7 @@ impl TileRun<'_> {
             self.lanes = controller.map(|controller| {
                 LaneSteps::new(self.simulator, controller, &mut self.stepper).heeding(self.interruption)
             });
-            self.features = self.simulator.features().filter(|_| controller.is_none()).map(FeatureWatch::new);
-            let observes_switches = observed == Observed::Switches;
-            self.switches = self
-                .simulator
-                .switches()
-                .filter(|_| observes_switches)
-                .map(|program| SwitchExtents::new(program, &self.stepper));
+            self.watches.begin_rows(self.simulator, &self.stepper, observed, controller.is_some());
         }
         let mut values = vec![0.0; rows.len() * outputs * width];
         let mut stops = Vec::new();
@@ -260,15 +245,7 @@ impl TileRun<'_> {
                 self.stepper.set_step_size(h);
                 let is_observed = steps.peek().is_none() || self.reduction.is_some();
                 self.stepper.refine(self.observes_accelerations && is_observed);
-                if let Some(switches) = &mut self.switches {
-                    switches.begin(&self.stepper);
-                }
-                if let Some(features) = &mut self.features {
-                    features.begin(&self.stepper);
-                }
-                if let Some(overlaps) = &mut self.overlaps {
-                    overlaps.begin(&self.stepper);
-                }
+                self.watches.begin(&self.stepper);
                 let failures = match &mut self.lanes {
                     Some(lanes) => lanes.step(&mut self.stepper, h, end),
                     None => self.stepper.step(h, end),
@@ -280,20 +257,9 @@ impl TileRun<'_> {
                 if let (Some(first), None) = (failures.first(), &self.stopped) {
                     self.stopped = Some((self.first + first.lane, self.stepper.lane(first.lane)));
                 }
-                if let Some(watch) = &mut self.watch {
-                    watch.look(&self.stepper, end);
-                }
-                if let Some(parting) = &mut self.parting {
-                    parting.look(end, |state| self.stepper.copy_lane(0, state));
-                }
-                if let Some(switches) = &mut self.switches {
-                    switches.end(&self.stepper, h);
-                }
-                let features = self.features.as_mut();
-                let hidden = features.is_some_and(|it| it.end_hidden(&self.stepper, self.count, h, end));
-                let (overlaps, is_divided) = (self.overlaps.as_mut(), self.lanes.is_some());
-                let is_too_deep = overlaps.is_some_and(|it| it.end(&self.stepper, self.count, h, end, is_divided));
-                self.beyond = self.beyond.or((hidden || is_too_deep).then_some(row));
+                let step = StepTaken { h, end, count: self.count, is_divided: self.lanes.is_some() };
+                let is_beyond = self.watches.end(&self.stepper, step);
+                self.beyond = self.beyond.or(is_beyond.then_some(row));
                 self.sample(end);
                 self.reduce(end);
                 stops.extend(failures.into_iter().map(|StepFailure { lane, time, equation }| Stop {
@@ -321,7 +287,7 @@ impl TileRun<'_> {
                 Observed::Switches => {
                     let (motion, extents) = values.split_at_mut(2 * self.stepper.coordinates() * width);
                     self.stepper.copy_motion(motion);
-                    if let Some(switches) = &mut self.switches {
+                    if let Some(switches) = &mut self.watches.switches {
                         switches.take(extents);
                     }
                 }
