@@ -97,7 +97,9 @@ impl<'a> Pieces<'a> {
             let basis = Basis::Taylor { monomials: space.monomials().clone(), centre };
             let ends = WordPart::of_word(word, &samples.motions).ends(&levels);
             let surrogate = SegmentSurrogate::new(basis, ends, &jet, <[f64]>::to_vec).told_at(&xi);
-            let errors = SegmentErrors::new(&surrogate, &xi, motions);
+            // From the start, which is known, errors grow. Behind events ends are farther from the centre of a jet than
+            // samples are: what one of them shows is said of all steps.
+            let errors = SegmentErrors::new(&surrogate, &xi, motions).of_segments_behind_events();
             all.push(Piece::new(surrogate, errors, xi));
         }
         let added = samples.xi.len() - validation.points.len() + all.len() - 1;

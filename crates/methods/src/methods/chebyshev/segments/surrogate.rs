@@ -259,6 +259,17 @@ impl SegmentErrors {
         self
     }
 
+    /// The largest of all steps of each segment behind an event, in each of them.
+    #[must_use]
+    pub fn of_segments_behind_events(mut self) -> Self {
+        for steps in self.lines.iter_mut().skip(1) {
+            let most = |line: usize| largest(steps.iter().map(|errors| errors[line]));
+            let all: Vec<f64> = (0..steps.first().map_or(0, Vec::len)).map(most).collect();
+            steps.iter_mut().for_each(|errors| errors.clone_from(&all));
+        }
+        self
+    }
+
     /// Of a line in a step of a segment and beside it.
     pub fn of_line(&self, segment: usize, step: usize, line: usize) -> f64 {
         largest(self.lines[segment].iter().take(step + 2).skip(step.saturating_sub(1)).map(|errors| errors[line]))

@@ -75,7 +75,7 @@ tuning! {
         samples_of_parts: usize = 24, moves "Chebyshev bounds through events";
         /// Points spread over the box that tell the share of it in which an event occurs.
         points_of_share: usize = 1 << 14, moves "shares of the box";
-        /// Such points miss a volume by so many times what is expected of so many.
+        /// Such points miss a volume by so many times the expected share.
         missed_share: f64 = 2.0, moves "shares of the box";
         /// Difference by which slopes of surfaces are taken.
         step_of_surfaces: f64 = 1e-6, moves "errors of Chebyshev bounds through events";
@@ -115,9 +115,9 @@ tuning! {
         corrections: usize = 5, moves "Chebyshev bounds through events";
         /// How far the branch of a segment goes on beyond its ends, as a share of it, at most.
         beyond_branch: f64 = 0.02, moves "Chebyshev bounds through events";
-        /// How far it does as a share of the step there, at most: beyond that a polynomial through its nodes says nothing.
+        /// How far it does as a share of the step there, at most: farther a polynomial through nodes says nothing.
         beyond_step: f64 = 0.2, moves "Chebyshev bounds through events";
-        /// Where so much of a segment is predicted, the motion is not held against it at times at which it is in another.
+        /// Where so much of a segment is predicted, motions at times of other segments are not held against it.
         shared_segment: f64 = 0.5, moves "errors of Chebyshev bounds through events";
     }
 }
