@@ -1,7 +1,7 @@
 //! Eight parameters whose outputs no polynomial of few samples follows: x = sin(ω t)/ω with ω² = Σ k/m, whose phase
 //! the box changes by more than two radians. Against closed forms.
 
-use mbint::inner::results::{Bounds, Summary, Uncertain, Verdict};
+use mbint::results::{Bounds, Summary, Uncertain, Verdict};
 
 use crate::common::random::Random;
 use crate::common::{read, run_methods};

@@ -1,11 +1,11 @@
-//! Statistics of simulated products with a surrogate as control variate (J. M. Hammersley & D. C. Handscomb, Monte Carlo
-//! Methods, 1964, § 5.5): its own are known by as many samples as one likes, and the products tell the difference.
+//! Statistics of simulated products with a surrogate as control variate (J. M. Hammersley & D. C. Handscomb, Monte
+//! Carlo Methods, 1964, § 5.5): its own are known by as many samples as one likes, and the products tell the difference.
 //!
-//! With the mean μ(s) of the surrogate over the laws, μ(f) = μ(f − β s) + β μ(s), where β is the regression coefficient
-//! of the products' values on the surrogate's. The variance follows likewise from squares about the means. Let
-//! s′ = f̄ + β (s − s̄). If a share δ of the products differs from s′ by more than ε, a quantile lies between those of s′
-//! whose shares are δ less and δ more, and ε beyond them; it also lies between two of the products' sorted values. The
-//! interval that leaves least open counts.
+//! With the mean μ(s) of the surrogate over the laws, μ(f) = μ(f − β s) + β μ(s), where β is the regression
+//! coefficient of the products' values on the surrogate's. The variance follows likewise from squares about the means.
+//! Let s′ = f̄ + β (s − s̄). If a share δ of the products differs from s′ by more than ε, a quantile lies between those
+//! of s′ whose shares are δ less and δ more, and ε beyond them; it also lies between two of the products' sorted
+//! values. The interval that leaves least open counts.
 
 use super::tuning::TUNING;
 use crate::numerics::statistics::{Estimate, Replicates};
@@ -18,7 +18,7 @@ const CONFIDENCE: f64 = 1.96;
 const BEYOND: usize = TUNING.beyond_error.len();
 
 /// Shares around a quantile, itself included.
-const AROUND: usize = 1 + 2 * BEYOND;
+const AROUND: usize = 1 + 2 * TUNING.beyond_error.len();
 
 /// An output's simulated values, and its surrogate as their control variate.
 #[derive(Clone, Debug)]
@@ -57,8 +57,8 @@ pub(super) struct Moments {
 }
 
 impl ControlVariate {
-    /// From simulated values and those of the surrogate at the same samples; `below`: numbers of values below quantiles,
-    /// at least, by the share, and at most.
+    /// From simulated values and those of the surrogate at the same samples; `below`: numbers of values below
+    /// quantiles, at least, by the share, and at most.
     pub fn new<'v>(values: impl Iterator<Item = &'v f64>, surrogate: &[f64], below: &[[usize; 3]]) -> Self {
         let mut values: Vec<f64> = values.copied().collect();
         let mean = Regression::of(&values, surrogate);
@@ -77,8 +77,8 @@ impl ControlVariate {
         Self { mean, variance, simulated: simulated.collect(), largest }
     }
 
-    /// Statistics of the products, from those of the surrogate. `of_box`: how far any value may be off; `time`: the part
-    /// of it that the steps leave. A product that cannot be simulated leaves all unknown.
+    /// Statistics of the products, from those of the surrogate. `of_box`: how far any value may be off; `time`: the
+    /// part of it that the steps leave. A product that cannot be simulated leaves all unknown.
     pub fn corrected(&self, own: &Replicates, of_box: f64, time: f64) -> Moments {
         let mean = self.mean.of_mean(own.mean());
         let quantiles = own.quantiles();
