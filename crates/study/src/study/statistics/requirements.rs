@@ -171,8 +171,8 @@ impl<'a> Together<'a> {
         let of_products = self.of_products();
         if of_products[1] - of_products[0] < interval[1] - interval[0] {
             interval = of_products;
-            fails = fails.clamp(1.0 - interval[1], 1.0 - interval[0]);
             (samples, method) = (self.products.len(), None);
+            fails = self.products.iter().filter(|own| !own[1]).count() as f64 / samples as f64;
         }
         // What lies outside of the surrogate counts against it.
         interval[0] *= 1.0 - self.rows.laws.left_out();
