@@ -34,7 +34,7 @@ pub fn statistics(summary: &Summary) -> String {
             None => format!("{value:.4e}"),
         };
         let ends = |lower: f64, upper: f64| format!("[{}, {}]", number(shown(lower)), number(shown(upper)));
-        // Motions under random excitations have neither a box nor a linear stack.
+        // Simulated motions have no linear stack, and under random excitations no box.
         let known = |value: f64, text: String| if value.is_nan() { "–".to_owned() } else { text };
         let estimate = |value: f64, of: Uncertain| format!("{} ± {:.1e}", number(value), shown(of.total()));
         let statistical = match (output.quantiles.first(), output.quantiles.last()) {
@@ -68,9 +68,14 @@ pub fn statistics(summary: &Summary) -> String {
             format!("samples are {} simulated motions under {names} (seed {seed}){shares}", found.samples)
         }
         None => {
-            let samples = found.samples;
-            let products = found.products.map(|count| format!(" and {count} simulated products")).unwrap_or_default();
-            format!("the worst case is every case of the box{shares}, by {samples} samples of the surrogate{products}")
+            let by = match (found.samples, found.products) {
+                (samples, None) => format!("{samples} samples of the surrogate"),
+                (samples, Some(products)) if samples == products => format!("{products} simulated products"),
+                (samples, Some(products)) => {
+                    format!("{samples} samples of the surrogate and {products} simulated products")
+                }
+            };
+            format!("the worst case is every case of the box{shares}, by {by}")
         }
     };
     format!(

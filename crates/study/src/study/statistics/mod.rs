@@ -4,9 +4,9 @@
 mod causes;
 mod control_variates;
 mod laws;
+mod motions;
 mod numbers;
 mod products;
-mod random;
 mod realisations;
 mod requirements;
 mod rows;
@@ -36,9 +36,10 @@ pub(super) fn run(description: &Description, shown: usize, options: &Options) ->
     let (bounds, mut summary, kept) = reduced::run(description, options, Keep::Statistics)?;
     let found = match &kept {
         _ if (options.interrupted)() => Err(INTERRUPTED.to_owned()),
-        _ if random::is_random(description) => random::of_motions(description, shown, options),
+        _ if motions::is_random(description) => motions::of_motions(description, shown, options),
         Some(kept) => of_run(description, shown, options, &bounds, kept),
-        None => Err("there is no surrogate over the whole box".to_owned()),
+        None if options.skip_infeasible => Err("there is no surrogate over the whole box".to_owned()),
+        None => motions::of_motions(description, shown, options).map(|found| beside_bounds(found, &bounds)),
     };
     let found = found.unwrap_or_else(|failure| StatisticsResult {
         times: Vec::new(),
@@ -50,6 +51,21 @@ pub(super) fn run(description: &Description, shown: usize, options: &Options) ->
     }
     summary.statistics = Some(Box::new(found));
     Ok((bounds, summary))
+}
+
+/// Statistics of motions, with the bounds' worst cases beside.
+fn beside_bounds(mut found: StatisticsResult, bounds: &Bounds) -> StatisticsResult {
+    for output in &mut found.summary.outputs {
+        let row = bounds.times.iter().position(|time| *time == output.time);
+        let own = bounds.outputs.iter().find(|own| own.name == output.output);
+        let Some((row, own)) = row.zip(own) else { continue };
+        output.nominal = own.nominal[row];
+        if let Some(band) = own.bands.iter().find(|band| band.method == Method::Chebyshev) {
+            output.worst_case = [band.lower[row], band.upper[row]];
+            output.worst_case_error = band.error.total[row];
+        }
+    }
+    found
 }
 
 /// Statistics of what a run kept; where a law reaches beyond the box, of a surrogate over a wider one.

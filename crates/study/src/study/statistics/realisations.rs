@@ -1,4 +1,4 @@
-//! Motions under realisations of random excitations: samples of all uncertain parameters and of the seeds.
+//! Motions at samples of the laws: of all uncertain parameters, and of the seeds of random excitations.
 
 use crate::elements::RandomFunction;
 use crate::methods::{Ensemble, Observed, Sampling, Until};
@@ -11,9 +11,10 @@ use crate::study::ensemble::{Progress, samples_of_part};
 use crate::study::problem::Study;
 use crate::study::reduced::{plan_reduction, values_of_samples};
 use crate::study::sample::steps_of_samples;
-use crate::study::stepping::StepPlan;
+use crate::study::stepping::{StepPlan, segmented_samples};
 
 use super::Laws;
+use super::motions::is_random;
 use super::tuning::TUNING;
 
 /// Seeds between which samples draw: ends whose products with the whole numbers of realisations are no whole numbers.
@@ -73,7 +74,11 @@ pub(super) fn realisations(
     samples: &[Vec<f64>],
     progress: &Progress,
 ) -> Result<Option<Realisations>, SimulationError> {
-    let plan = steps_of_samples(study)?;
+    let cut = if is_random(study.description) { None } else { segmented_samples(study)? };
+    let plan = match cut {
+        Some(schedule) => StepPlan::fixed(schedule),
+        None => steps_of_samples(study)?,
+    };
     plan_reduction(study, &plan)?;
     let own = |sample: &Vec<f64>| subsystem.parameters.iter().map(|&number| sample[number]).collect();
     // Without parameters and seeds, one motion is that of all samples.

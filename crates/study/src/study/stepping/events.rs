@@ -2,6 +2,7 @@
 
 use super::controlled::controlling_samples;
 use super::validated::may_extrapolate;
+use crate::methods::Keep;
 use crate::model::Stepping;
 use crate::numerics::{Sample, spread};
 use crate::results::{EventSummary, EventsFollowed, MethodSummary};
@@ -23,6 +24,16 @@ pub fn segmented(study: &Study) -> Result<Option<Schedule>, SimulationError> {
     let duration = study.description.simulation.duration;
     let lasts = |schedule: &Schedule| schedule.segments().is_some_and(|segments| segments.horizon >= duration);
     Ok(schedule.filter(|schedule| !accumulates || lasts(schedule)))
+}
+
+/// Steps between the events that single samples meet, if there are any and these can be cut there up to the end.
+pub fn segmented_samples(study: &Study) -> Result<Option<Schedule>, SimulationError> {
+    if !(may_extrapolate(study) && opens_nothing(study)) {
+        return Ok(None);
+    }
+    let schedule = segments_of_samples(study, &event_samples(study))?;
+    let duration = study.description.simulation.duration;
+    Ok(schedule.filter(|schedule| schedule.segments().is_some_and(|segments| segments.horizon >= duration)))
 }
 
 /// Steps between the events of the nominal motion, if there are any and it can be followed, whatever its scheme.
@@ -105,7 +116,7 @@ fn may_be_cut(study: &Study) -> bool {
     may_extrapolate(study)
         && within
         && !methods.is_empty()
-        && !study.request.keep.is_any()
+        && study.request.keep != Keep::WholeBox
         && study.stored.is_none()
         && opens_nothing(study)
 }

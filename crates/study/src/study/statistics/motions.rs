@@ -1,5 +1,5 @@
-//! Statistics of a model with random excitations: no surrogate has so many dimensions, so that motions themselves are
-//! the samples, each with parameters of their laws and a realisation of its own.
+//! Statistics of simulated motions, each with parameters of their laws and, under random excitations, a realisation of
+//! its own: no surrogate has so many dimensions, and motions that are cut at events leave none over the whole box.
 
 use rayon::prelude::*;
 
@@ -52,7 +52,7 @@ pub(super) fn of_motions(
     if numbers > TUNING.most_numbers_of_random as f64 {
         return Err(format!("{numbers:.0} values are too many to be kept: ask for fewer samples or rows"));
     }
-    (options.stage)("random motions");
+    (options.stage)("samples of the laws");
     let samples = samples(&laws, seed, count);
     let (_, prepared) = prepare(&model, choices(&model, options)).map_err(|error| error.to_string())?;
     let options = Options { methods: Some(Vec::new()), store: None, ..*options };
@@ -85,7 +85,7 @@ pub(super) fn of_motions(
     let reduced = sampled.numbers();
     let (outputs, summaries) = outputs.into_iter().unzip();
     let summary = StatisticsSummary {
-        products: None,
+        products: Some(count),
         samples: count,
         parameters,
         quantiles: asked.quantiles.clone(),
@@ -96,7 +96,7 @@ pub(super) fn of_motions(
         reduced,
         requirements,
         together,
-        random: Some(RandomSummary { excitations, seed }),
+        random: (!excitations.is_empty()).then_some(RandomSummary { excitations, seed }),
         failure: note,
     };
     Ok(StatisticsResult { times, outputs, summary })
