@@ -3,11 +3,11 @@
 
 use std::f64::consts::PI;
 
-use mbint::results::{Bounds, Method, Summary};
+use mbint::results::{Bounds, Criterion, Method, Summary};
 
 use crate::common::dormand_prince::dormand_prince;
 use crate::common::random::Random;
-use crate::common::{Vary, band, largest, output, read, run_methods};
+use crate::common::{Vary, band, largest, output, read, run_methods, study_of};
 
 /// A ball that bounces without loss.
 const ELASTIC: &str = "
@@ -279,6 +279,40 @@ fn statistics_go_through_events() {
     let [least, most] = found.summary.requirements[0].interval;
     let share = slow as f64 / PRODUCTS as f64;
     assert!((least..=most).contains(&share) && most - least < 0.05, "{least} to {most}, not {share}");
+}
+
+/// The deepest point of the elastic ball is g/ω² + √(u²/ω² + g²/ω⁴) below the ground, with u² = 2 g h and ω² = K.
+#[test]
+fn tolerances_are_allocated_through_events() {
+    let text = ELASTIC
+        .replace("tolerance: 5%", "tolerance: 5%, cost: { reciprocal: 1 }")
+        .replace("tolerance: 2%", "tolerance: 2%, cost: { reciprocal: 1 }")
+        .replace("v: ball.vy", "deep: { min: ball.y }");
+    let study = study_of(&format!("{text}requirements: {{ soft: deep >= -0.0146 m }}\n"));
+    let found = study.allocate(Criterion::WorstCase, 3.0).unwrap();
+    assert!(found.is_confirmed && found.surrogate_error.unwrap() < 0.01, "{found:?}");
+    let deep = |stiffer: f64, higher: f64| {
+        let (g, stiffness, height) = (9.81, 1e5 * (1.0 - 0.05 * stiffer), 1.0 + 0.02 * higher);
+        g / stiffness + (2.0 * g * height / stiffness + (g / stiffness).powi(2)).sqrt()
+    };
+    let multiple = |name: &str| {
+        let own = found.tolerances.iter().find(|own| own.parameter == name).unwrap();
+        own.after.above / own.before.above
+    };
+    let (stiffer, higher) = (multiple("K"), multiple("h0"));
+    assert!(deep(stiffer, higher) <= 0.0146, "{stiffer} {higher}");
+    // The cheapest of all pairs on the limit.
+    let on_limit = |stiffer: f64| {
+        let (mut low, mut high) = (0.0, 3.0);
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if deep(stiffer, middle) <= 0.0146 { low = middle } else { high = middle }
+        }
+        1.0 / stiffer + 1.0 / low
+    };
+    let least = (1..3000).map(|n| on_limit(1e-3 * f64::from(n))).fold(f64::INFINITY, f64::min);
+    let cost = 1.0 / stiffer + 1.0 / higher;
+    assert!(cost >= least * (1.0 - 1e-6) && cost <= 1.02 * least, "{cost}, not {least}");
 }
 
 #[test]

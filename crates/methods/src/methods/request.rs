@@ -42,6 +42,8 @@ pub enum Keep {
     /// One of the whole box, as exact as the bounds; beyond [`MOST_ON_GRIDS`](super::MOST_ON_GRIDS) parameters one as
     /// for statistics.
     WholeBox,
+    /// The same of reduced outputs and margins alone, of motions that may be cut at events.
+    Margins,
     /// One whose error is told by simulated products: polynomials through values and gradients, if ends were followed.
     Statistics,
 }

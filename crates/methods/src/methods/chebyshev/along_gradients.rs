@@ -42,7 +42,7 @@ impl<'f> FollowedWithin<'f> {
         let are_many = self.parameters > MOST_ON_GRIDS;
         let has_kept = match keep {
             Keep::Nothing => true,
-            Keep::WholeBox => are_many && self.followed.surrogate().is_some(),
+            Keep::WholeBox | Keep::Margins => are_many && self.followed.surrogate().is_some(),
             Keep::Statistics => self.followed.surrogate().is_some(),
         };
         has_kept && (are_many || self.all)
@@ -61,7 +61,7 @@ impl<'f> FollowedWithin<'f> {
 
     /// Leaves a goal without outputs of which they are the bounds, unless a surrogate of the whole box is kept.
     pub fn leave(&self, goal: &mut Goal, keep: Keep) {
-        if keep == Keep::WholeBox {
+        if matches!(keep, Keep::WholeBox | Keep::Margins) {
             return;
         }
         for (index, output) in goal.outputs.iter_mut().enumerate() {

@@ -30,7 +30,7 @@ pub fn surrogate(model: &Description, asked: AllocateOptions, options: &Options)
         (options.stage)("the surrogate over the widest tolerances");
         for order in 0..=TUNING.raised_orders {
             let only = Options { methods: Some(vec![Method::Chebyshev]), ..of(options) };
-            let ran = subsystems::run(&wide, &only, Keep::WholeBox);
+            let ran = subsystems::run(&wide, &only, Keep::Margins);
             let failure = match ran {
                 Ok((_, summary, kept)) => {
                     simulations += run_simulations(&summary);

@@ -37,6 +37,8 @@ pub fn kept(study: &Study, results: &mut Results, rows: usize) -> Option<KeptPar
             let values = |row: usize| outcome.result.bands.iter().map(|ranges| ranges[row].lower).collect();
             KeptSurrogate::constant(times.iter().enumerate().map(|(row, &time)| (time, values(row))))
         }
+        // Motions that are cut at events have none.
+        None if study.request.keep == Keep::Margins => KeptSurrogate::default(),
         None => return None,
     };
     let rows = rows.min(surrogate.rows()).min(outcome.result.reached);

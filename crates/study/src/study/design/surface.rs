@@ -46,7 +46,7 @@ impl DesignSurface {
         for _ in 0..TUNING.narrower_regions {
             let over = axes.over(model, &region, question.share.is_some());
             let options = Options { methods: Some(vec![Method::Chebyshev]), store: None, ..*options };
-            match subsystems::run(&over, &options, Keep::WholeBox) {
+            match subsystems::run(&over, &options, Keep::Margins) {
                 Ok((_, summary, kept)) => {
                     simulations += run_simulations(&summary);
                     if let Some(kept) = kept.filter(is_known) {
