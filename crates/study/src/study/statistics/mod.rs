@@ -36,7 +36,7 @@ pub(super) fn run(description: &Description, shown: usize, options: &Options) ->
     let (bounds, mut summary, kept) = reduced::run(description, options, Keep::Statistics)?;
     let found = match &kept {
         _ if (options.interrupted)() => Err(INTERRUPTED.to_owned()),
-        _ if motions::is_random(description) => motions::of_motions(description, shown, options),
+        _ if realisations::is_random(description) => motions::of_motions(description, shown, options),
         Some(kept) => of_run(description, shown, options, &bounds, kept),
         None if options.skip_infeasible => Err("there is no surrogate over the whole box".to_owned()),
         None => motions::of_motions(description, shown, options).map(|found| beside_bounds(found, &bounds)),

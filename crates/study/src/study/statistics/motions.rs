@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use super::realisations::{Realisations, realisations, samples, varied};
 use super::tuning::TUNING;
 use super::{INTERRUPTED, Laws};
-use crate::model::{Analysis, Description, Requirement};
+use crate::model::{Description, Requirement};
 use crate::numerics::statistics::{
     Estimate, has_interval, sample_deviation, sample_mean, sample_quantile, share_interval,
 };
@@ -26,11 +26,6 @@ const METHOD: &str = "simulated motions";
 
 /// Name of all requirements together.
 const TOGETHER: &str = "all requirements";
-
-/// Whether motions are random.
-pub(super) fn is_random(description: &Description) -> bool {
-    description.analysis == Analysis::Motion && description.trajectories.iter().any(|own| own.random().is_some())
-}
 
 /// Statistics of the first outputs, reduced outputs and requirements, by simulated motions.
 ///

@@ -2,7 +2,7 @@
 
 use crate::elements::RandomFunction;
 use crate::methods::{Ensemble, Observed, Sampling, Until};
-use crate::model::{Description, ParameterValue, Trajectory};
+use crate::model::{Analysis, Description, ParameterValue, Trajectory};
 use crate::numerics::statistics::Normals;
 use crate::numerics::{SAFETY_OF_STEPS, Sample, step_error};
 use crate::reduce::Subsystem;
@@ -14,11 +14,15 @@ use crate::study::sample::steps_of_samples;
 use crate::study::stepping::{StepPlan, segmented_samples};
 
 use super::Laws;
-use super::motions::is_random;
 use super::tuning::TUNING;
 
 /// Seeds between which samples draw: ends whose products with the whole numbers of realisations are no whole numbers.
 const SEEDS: [f64; 2] = [0.211_324_865_405_187_13, 0.788_675_134_594_812_9];
+
+/// Whether motions are random.
+pub(super) fn is_random(description: &Description) -> bool {
+    description.analysis == Analysis::Motion && description.trajectories.iter().any(|own| own.random().is_some())
+}
 
 /// A model whose realisations are uncertain.
 pub(super) fn varied(description: &Description) -> Description {
