@@ -275,6 +275,15 @@ fn statistics_go_through_events() {
             assert!(own.mean[row].error + own.mean[row].sampling <= 0.05 * variance.sqrt() + 1e-8, "{name} at {t} s");
         }
     }
+    for (row, &t) in bounds.times.iter().enumerate().skip(1).step_by(9) {
+        let [height, stiffness] = [(1e-6, 0.0), (0.0, 0.1)].map(|(height, stiffness)| {
+            let at = |sign: f64| elastic(1.0 + sign * height, 1e5 + sign * stiffness, t)[0];
+            0.5 * (at(1.0) - at(-1.0)) / if height > 0.0 { height / 0.02 } else { stiffness / 5e3 }
+        });
+        let (linear, rss) = (found.outputs[0].linear[row], found.outputs[0].rss[row]);
+        assert!((linear - height.abs() - stiffness.abs()).abs() < 1e-5, "{linear} at {t} s: {height}, {stiffness}");
+        assert!((rss - height.hypot(stiffness)).abs() < 1e-5, "{rss} at {t} s: {height}, {stiffness}");
+    }
     let slow = products.iter().filter(|&&(height, k)| elastic(height, k, 1.2)[1] <= 0.0).count();
     let [least, most] = found.summary.requirements[0].interval;
     let share = slow as f64 / PRODUCTS as f64;

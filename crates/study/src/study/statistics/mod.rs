@@ -1,6 +1,7 @@
 //! Statistics beside the bounds, from the surrogate that a run keeps: quantiles over time, mean, standard deviation,
 //! and the linearised tolerance stack. Under random excitations they are of simulated motions.
 
+mod beside_bounds;
 mod causes;
 mod control_variates;
 mod laws;
@@ -33,13 +34,18 @@ const INTERRUPTED: &str = "interrupted before statistics were done";
 /// # Errors
 /// As for any run. Where statistics alone fail, the summary says why.
 pub(super) fn run(description: &Description, shown: usize, options: &Options) -> Result<(Bounds, Summary), RunError> {
-    let (bounds, mut summary, kept) = reduced::run(description, options, Keep::Statistics)?;
+    // Motions that are cut at events leave no surrogate to take linear sums from.
+    let derivatives = options.derivatives || shown > 0;
+    let asked = Options { methods: options.methods.clone(), derivatives, ..*options };
+    // Random motions meet more events than polynomials between them follow: they are not cut.
+    let keep = if realisations::is_random(description) { Keep::WholeBox } else { Keep::Statistics };
+    let (mut bounds, mut summary, kept) = reduced::run(description, &asked, keep)?;
     let found = match &kept {
         _ if (options.interrupted)() => Err(INTERRUPTED.to_owned()),
         _ if realisations::is_random(description) => motions::of_motions(description, shown, options),
         Some(kept) => of_run(description, shown, options, &bounds, kept),
         None if options.skip_infeasible => Err("there is no surrogate over the whole box".to_owned()),
-        None => motions::of_motions(description, shown, options).map(|found| beside_bounds(found, &bounds)),
+        None => beside_bounds::of_motions(description, shown, options, &bounds),
     };
     let found = found.unwrap_or_else(|failure| StatisticsResult {
         times: Vec::new(),
@@ -50,22 +56,10 @@ pub(super) fn run(description: &Description, shown: usize, options: &Options) ->
         summary.failure.get_or_insert_with(|| INTERRUPTED.to_owned());
     }
     summary.statistics = Some(Box::new(found));
-    Ok((bounds, summary))
-}
-
-/// Statistics of motions, with the bounds' worst cases beside.
-fn beside_bounds(mut found: StatisticsResult, bounds: &Bounds) -> StatisticsResult {
-    for output in &mut found.summary.outputs {
-        let row = bounds.times.iter().position(|time| *time == output.time);
-        let own = bounds.outputs.iter().find(|own| own.name == output.output);
-        let Some((row, own)) = row.zip(own) else { continue };
-        output.nominal = own.nominal[row];
-        if let Some(band) = own.bands.iter().find(|band| band.method == Method::Chebyshev) {
-            output.worst_case = [band.lower[row], band.upper[row]];
-            output.worst_case_error = band.error.total[row];
-        }
+    if !options.derivatives {
+        bounds.derivatives.clear();
     }
-    found
+    Ok((bounds, summary))
 }
 
 /// Statistics of what a run kept; where a law reaches beyond the box, of a surrogate over a wider one.
