@@ -50,13 +50,10 @@ impl<'f> FollowedWithin<'f> {
 
     /// All of them as what a method finds. The simulations were counted where they were made.
     pub fn bounds(&self) -> MethodResult {
-        let ends = self.followed.ends();
-        let mut bands = BandBuilder::new(self.outputs, ends.len() / self.outputs.max(1));
-        for (index, found) in ends.iter().enumerate() {
-            bands.set(index / self.outputs, index % self.outputs, found.range, found.error);
-            bands.set_sensitivity(index / self.outputs, index % self.outputs, found.sensitivity.clone());
-        }
-        MethodResult { kept: self.followed.surrogate().cloned(), ..bands.finish(0, Simulated::default()) }
+        let count = self.followed.ends().len();
+        let mut result = BandBuilder::new(self.outputs, count / self.outputs.max(1)).finish(0, Simulated::default());
+        (0..count).for_each(|index| self.put(index, &mut result));
+        MethodResult { kept: self.followed.surrogate().cloned(), ..result }
     }
 
     /// Leaves a goal without outputs of which they are the bounds, unless a surrogate of the whole box is kept.
@@ -75,13 +72,18 @@ impl<'f> FollowedWithin<'f> {
     pub fn replace(&self, result: &mut MethodResult) {
         for (index, (found, is_within)) in self.followed.ends().iter().zip(&self.is_within).enumerate() {
             let (row, output) = (index / self.outputs, index % self.outputs);
-            let error = &mut result.surrogate[output][row];
-            if row < result.reached && (*is_within || found.error < *error) {
-                *error = found.error;
-                result.bands[output][row] = found.range;
-                result.steps[output][row] = f64::NAN;
-                result.sensitivities[output][row].clone_from(&found.sensitivity);
+            if row < result.reached && (*is_within || found.error < result.surrogate[output][row]) {
+                self.put(index, result);
             }
         }
+    }
+
+    /// Puts the ends of an output in a row into a result.
+    fn put(&self, index: usize, result: &mut MethodResult) {
+        let (found, row, output) = (&self.followed.ends()[index], index / self.outputs, index % self.outputs);
+        result.bands[output][row] = found.range;
+        result.surrogate[output][row] = found.error;
+        result.steps[output][row] = f64::NAN;
+        result.sensitivities[output][row].clone_from(&found.sensitivity);
     }
 }

@@ -22,7 +22,7 @@ pub use estimates::share_interval;
 pub use estimates::{Estimate, Replicates};
 pub use mixture::{Mixture, least_at_distance, shares_below, weighted_quantile};
 pub use normals::Normals;
-pub use order::{has_interval, sample_deviation, sample_mean, sample_quantile};
+pub use order::{SampleQuantile, has_interval, sample_deviation, sample_mean, sample_quantile};
 pub use points::{REPLICATES, replicate};
 pub use quantiles::Quantiles;
 pub use rare::{RareShare, rare_share};

@@ -29,31 +29,50 @@ pub fn sample_deviation(values: &[f64]) -> Estimate {
     Estimate { value, sampling: if value > 0.0 { of_square / (2.0 * value) } else { 0.0 } }
 }
 
-/// The value below which a share lies, of sorted independent samples. Its 95 % confidence interval has samples as ends,
-/// for any law: as many lie below the quantile as of a binomial law. NaN where so few samples have none, or one is NaN.
+/// The value below which a share lies, of sorted independent samples, with its 95 % confidence interval.
 pub fn sample_quantile(sorted: &[f64], share: f64) -> Estimate {
-    let n = sorted.len();
-    let unknown = Estimate { value: f64::NAN, sampling: f64::NAN };
-    if [sorted.first(), sorted.last()].iter().any(|end| end.is_none_or(|value| value.is_nan())) {
-        return unknown;
-    }
-    let Some([below, above]) = ranks(share, n) else { return unknown };
-    let index = (share * n as f64 - 0.5).clamp(0.0, (n - 1) as f64);
-    let (at, between) = (index as usize, index.fract());
-    let value = sorted[at] + between * (sorted[(at + 1).min(n - 1)] - sorted[at]);
-    Estimate { value, sampling: (value - sorted[below - 1]).max(sorted[above - 1] - value) }
+    SampleQuantile::new(share, sorted.len(), 0.05).of(sorted)
 }
 
 /// Whether so many samples have a confidence interval for a quantile.
 pub fn has_interval(share: f64, count: usize) -> bool {
-    ranks(share, count).is_some()
+    ranks(share, count, 0.05).is_some()
 }
 
-/// Ranks, from 1, of the samples between which a quantile lies with 95 %.
-fn ranks(share: f64, n: usize) -> Option<[usize; 2]> {
+/// The quantile of so many sorted independent samples. Its confidence interval has samples as ends, for any law: as
+/// many lie below the quantile as of a binomial law.
+#[derive(Clone, Debug)]
+pub struct SampleQuantile {
+    share: f64,
+    ranks: Option<[usize; 2]>,
+}
+
+impl SampleQuantile {
+    /// For a share, with an interval that leaves so much out.
+    pub fn new(share: f64, count: usize, outside: f64) -> Self {
+        Self { share, ranks: ranks(share, count, outside) }
+    }
+
+    /// Of these samples; NaN where so few have no interval, or one is NaN.
+    pub fn of(&self, sorted: &[f64]) -> Estimate {
+        let n = sorted.len();
+        let unknown = Estimate { value: f64::NAN, sampling: f64::NAN };
+        if [sorted.first(), sorted.last()].iter().any(|end| end.is_none_or(|value| value.is_nan())) {
+            return unknown;
+        }
+        let Some([below, above]) = self.ranks else { return unknown };
+        let index = (self.share * n as f64 - 0.5).clamp(0.0, (n - 1) as f64);
+        let (at, between) = (index as usize, index.fract());
+        let value = sorted[at] + between * (sorted[(at + 1).min(n - 1)] - sorted[at]);
+        Estimate { value, sampling: (value - sorted[below - 1]).max(sorted[above - 1] - value) }
+    }
+}
+
+/// Ranks, from 1, of the samples between which a quantile lies but for so much.
+fn ranks(share: f64, n: usize, outside: f64) -> Option<[usize; 2]> {
     // The i-th smallest of n shares is of the law Beta(i, n + 1 − i).
-    let is_below = |i: usize| beta_quantile(0.975, i as f64, (n + 1 - i) as f64) <= share;
-    let is_above = |i: usize| beta_quantile(0.025, i as f64, (n + 1 - i) as f64) >= share;
+    let is_below = |i: usize| beta_quantile(1.0 - 0.5 * outside, i as f64, (n + 1 - i) as f64) <= share;
+    let is_above = |i: usize| beta_quantile(0.5 * outside, i as f64, (n + 1 - i) as f64) >= share;
     let (mut below, mut from) = (0, n);
     while below < from {
         let middle = (below + from).div_ceil(2);

@@ -113,9 +113,9 @@ impl Kept {
 
     /// Whether values of the first so many outputs, and all reduced outputs and margins, are within the tolerance.
     pub fn is_resolved(&self, outputs: usize) -> bool {
-        let reduced = self.parts.iter().filter_map(|placed| placed.part.reduced.as_ref());
+        let mut reduced = self.parts.iter().filter_map(|placed| placed.part.reduced.as_ref());
         (0..outputs).all(|output| !self.error(output).unresolved.contains(&true))
-            && reduced.into_iter().all(KeptReduced::is_resolved)
+            && reduced.all(KeptReduced::is_resolved)
     }
 
     /// Numbers of the uncertain parameters on which an output may depend.

@@ -8,7 +8,7 @@
 //! values. The interval that leaves least open counts.
 
 use super::tuning::TUNING;
-use crate::numerics::statistics::{Estimate, Replicates};
+use crate::numerics::statistics::{Estimate, Replicates, SampleQuantile};
 use crate::results::Uncertain;
 
 /// Half width of a 95 % confidence interval over the standard error.
@@ -25,8 +25,8 @@ const AROUND: usize = 1 + 2 * TUNING.beyond_error.len();
 pub(super) struct ControlVariate {
     mean: Regression,
     variance: Regression,
-    /// By quantile: that of the simulated values.
-    simulated: Vec<Between>,
+    /// Quantiles of the simulated values alone.
+    simulated: Vec<Estimate>,
     /// The largest differences but so many as may be beyond ε.
     largest: [f64; BEYOND],
 }
@@ -41,14 +41,6 @@ struct Regression {
     sampling: f64,
 }
 
-/// An estimate, and the interval that it lies in.
-#[derive(Clone, Copy, Debug)]
-struct Between {
-    value: f64,
-    lower: f64,
-    upper: f64,
-}
-
 /// Mean, standard deviation and quantiles.
 pub(super) struct Moments {
     pub mean: Uncertain,
@@ -57,9 +49,8 @@ pub(super) struct Moments {
 }
 
 impl ControlVariate {
-    /// From simulated values and those of the surrogate at the same samples; `below`: numbers of values below
-    /// quantiles, at least, by the share, and at most.
-    pub fn new<'v>(values: impl Iterator<Item = &'v f64>, surrogate: &[f64], below: &[[usize; 3]]) -> Self {
+    /// From simulated values and those of the surrogate at the same samples; `quantiles` are those of the values alone.
+    pub fn new<'v>(values: impl Iterator<Item = &'v f64>, surrogate: &[f64], quantiles: &[SampleQuantile]) -> Self {
         let mut values: Vec<f64> = values.copied().collect();
         let mean = Regression::of(&values, surrogate);
         let squares = |values: &[f64], mean: f64| -> Vec<f64> {
@@ -69,11 +60,7 @@ impl ControlVariate {
         let variance = Regression::of(&squares(&values, mean.to), &squares(surrogate, mean.from));
         let largest = largest(values.iter().zip(surrogate).map(|(value, own)| value - mean.at(*own)));
         values.sort_unstable_by(f64::total_cmp);
-        let simulated = below.iter().map(|&[least, own, most]| {
-            let lower = least.checked_sub(1).map_or(f64::NEG_INFINITY, |index| values[index]);
-            let upper = values.get(most).copied().unwrap_or(f64::INFINITY);
-            Between { value: values[own.min(values.len() - 1)], lower, upper }
-        });
+        let simulated = quantiles.iter().map(|quantile| quantile.of(&values));
         Self { mean, variance, simulated: simulated.collect(), largest }
     }
 
@@ -83,7 +70,7 @@ impl ControlVariate {
         let mean = self.mean.of_mean(own.mean());
         let quantiles = own.quantiles();
         let around = quantiles.chunks_exact(AROUND).zip(&self.simulated);
-        let quantile = |(around, simulated): (&[Estimate], &Between)| self.quantile(around, *simulated, of_box, time);
+        let quantile = |(around, simulated): (&[Estimate], &Estimate)| self.quantile(around, *simulated, of_box, time);
         Moments {
             mean: Uncertain { value: mean.value, sampling: mean.sampling, error: time },
             deviation: self.deviation(own.deviation(), time),
@@ -101,26 +88,23 @@ impl ControlVariate {
         Uncertain { value, sampling: (upper - value).max(value - lower), error: time }
     }
 
-    /// A quantile, given those of the surrogate at the shares around it, and that of the simulated values.
-    fn quantile(&self, around: &[Estimate], simulated: Between, of_box: f64, time: f64) -> Uncertain {
+    /// A quantile, given those of the surrogate at the shares around it, and that of the simulated values alone.
+    fn quantile(&self, around: &[Estimate], simulated: Estimate, of_box: f64, time: f64) -> Uncertain {
         let Estimate { value: own, sampling } = around[0];
         if self.mean.to.is_nan() {
             return Uncertain { value: own, sampling, error: f64::NAN };
         }
-        let value = self.mean.at(own);
-        let pairs = around[1..].chunks_exact(2).zip(self.largest);
-        let by_differences = pairs.map(|(pair, largest)| Between {
-            value,
-            lower: self.mean.at(pair[0].value) - largest,
-            upper: self.mean.at(pair[1].value) + largest,
+        let Estimate { value, sampling: regressed } = self.mean.scaled(around[0]);
+        let by_differences = around[1..].chunks_exact(2).zip(self.largest).map(|(pair, largest)| {
+            let ends = [pair[0].value, pair[1].value].map(|end| self.mean.at(end));
+            Uncertain { value, sampling: regressed, error: (ends[1] - value).max(value - ends[0]) + largest + time }
         });
-        let by_box = Between { value: own, lower: own - of_box + time, upper: own + of_box - time };
-        let by_differences = by_differences.map(|found| (found, self.mean.coefficient * sampling));
-        let others = [(by_box, sampling), (simulated, 0.0)];
-        let least = by_differences.chain(others).map(|(found, sampling)| (found, sampling, found.error() + sampling));
-        // The simulated values are always there.
-        let least = least.reduce(|a, b| if b.2 < a.2 { b } else { a }).unwrap_or((simulated, 0.0, 0.0));
-        Uncertain { value: least.0.value, sampling: least.1, error: least.0.error() + time }
+        let by_box = Uncertain { value: own, sampling, error: of_box };
+        let alone = Uncertain { value: simulated.value, sampling: 0.0, error: simulated.sampling + time };
+        // Written so that the unknown is the last.
+        by_differences
+            .chain([by_box])
+            .fold(alone, |a, b| if a.total() <= b.total() || b.total().is_nan() { a } else { b })
     }
 }
 
@@ -142,17 +126,15 @@ impl Regression {
         self.to + self.coefficient * (surrogate - self.from)
     }
 
+    /// An estimate of the surrogate's, as one of the values.
+    fn scaled(&self, own: Estimate) -> Estimate {
+        Estimate { value: self.at(own.value), sampling: self.coefficient * own.sampling }
+    }
+
     /// The values' mean, from that of the surrogate.
     fn of_mean(&self, own: Estimate) -> Estimate {
-        Estimate { value: self.at(own.value), sampling: self.coefficient * own.sampling + self.sampling }
-    }
-}
-
-impl Between {
-    /// How far the truth may be from the estimate; infinite where that is not known.
-    fn error(&self) -> f64 {
-        let error = (self.upper - self.value).max(self.value - self.lower);
-        if error.is_nan() { f64::INFINITY } else { error }
+        let Estimate { value, sampling } = self.scaled(own);
+        Estimate { value, sampling: sampling + self.sampling }
     }
 }
 
@@ -166,8 +148,7 @@ impl Moments {
 
     /// Whether all errors are known.
     pub fn are_known(&self) -> bool {
-        let all = [&self.mean, &self.deviation].into_iter().chain(&self.quantiles);
-        all.into_iter().all(|own| (own.sampling + own.error).is_finite())
+        [&self.mean, &self.deviation].into_iter().chain(&self.quantiles).all(|own| own.total().is_finite())
     }
 }
 

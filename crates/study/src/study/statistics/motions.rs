@@ -3,13 +3,13 @@
 
 use rayon::prelude::*;
 
+use super::control_variates::Moments;
 use super::realisations::{Realisations, realisations, samples, varied};
+use super::requirements::interval_of;
 use super::tuning::TUNING;
 use super::{INTERRUPTED, Laws};
 use crate::model::{Description, Requirement};
-use crate::numerics::statistics::{
-    Estimate, has_interval, sample_deviation, sample_mean, sample_quantile, share_interval,
-};
+use crate::numerics::statistics::{Estimate, has_interval, sample_deviation, sample_mean, sample_quantile};
 use crate::reduce::Subsystem;
 use crate::results::{
     ExposureSummary, NumberStatistics, OutputStatistics, OutputStatisticsSummary, RandomSummary, StatisticsResult,
@@ -104,20 +104,13 @@ struct Sampled<'d> {
     count: usize,
 }
 
-/// Mean, deviation and quantiles.
-struct Numbers {
-    mean: Uncertain,
-    deviation: Uncertain,
-    quantiles: Vec<Uncertain>,
-}
-
 impl Sampled<'_> {
-    fn statistics(&self, values: &[f64], error: f64) -> Numbers {
+    fn statistics(&self, values: &[f64], error: f64) -> Moments {
         let mut sorted = values.to_vec();
         sorted.sort_unstable_by(f64::total_cmp);
         let with_error = |Estimate { value, sampling }: Estimate| Uncertain { value, sampling, error };
         let shares = &self.description.statistics.quantiles;
-        Numbers {
+        Moments {
             mean: with_error(sample_mean(values)),
             deviation: with_error(sample_deviation(values)),
             quantiles: shares.iter().map(|share| with_error(sample_quantile(&sorted, *share))).collect(),
@@ -130,7 +123,7 @@ impl Sampled<'_> {
             .parts
             .iter()
             .find_map(|(subsystem, found)| Some((subsystem.outputs.iter().position(|own| *own == output)?, found)))?;
-        let all: Vec<Numbers> = (0..found.times.len())
+        let all: Vec<Moments> = (0..found.times.len())
             .into_par_iter()
             .map(|row| {
                 let (values, error) = found.of_row(row, line);
@@ -177,7 +170,7 @@ impl Sampled<'_> {
             let (values, error) = self.parts.iter().find_map(|(subsystem, found)| {
                 found.numbers.get(subsystem.reduced.iter().position(|number| *number == index)?)
             })?;
-            let Numbers { mean, deviation, quantiles } = self.statistics(values, *error);
+            let Moments { mean, deviation, quantiles } = self.statistics(values, *error);
             let display = self.description.display.get(&own.name).cloned();
             let (name, unit) = (own.name.clone(), own.unit.clone());
             Some(NumberStatistics { name, unit, display, mean, deviation, quantiles })
@@ -218,9 +211,8 @@ impl Sampled<'_> {
 
     fn share(&self, name: &str, fulfilled: &[[bool; 3]], window: f64) -> YieldSummary {
         let count = fulfilled.len();
-        let seen = [0, 1, 2].map(|sign| fulfilled.iter().filter(|own| own[sign]).count());
-        let share = seen[1] as f64 / count as f64;
-        let interval = [share_interval(seen[0], count)[0], share_interval(seen[2], count)[1]];
+        let share = fulfilled.iter().filter(|own| own[1]).count() as f64 / count as f64;
+        let interval = interval_of(fulfilled);
         let ppm = |share: f64| 1e6 * (1.0 - share);
         // Windows of the motion fail independently of one another, one after the other.
         let exposure = self.description.statistics.exposure.filter(|_| window > 0.0).map(|time| {

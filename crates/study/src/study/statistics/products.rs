@@ -8,7 +8,7 @@ use super::laws::Laws;
 use super::tuning::TUNING;
 use crate::model::Description;
 use crate::numerics::Sample;
-use crate::numerics::statistics::{REPLICATES, beta_quantile};
+use crate::numerics::statistics::{REPLICATES, SampleQuantile, beta_quantile};
 use crate::study::answers::Kept;
 use crate::study::attained::tuning::TUNING as ATTAINED;
 use crate::study::sample::{ChosenSamples, sample};
@@ -28,8 +28,8 @@ pub(super) struct Products {
     reduced: usize,
     /// Limits of the shares of products that differ by more than each ε.
     beyond: [f64; TUNING.beyond_error.len()],
-    /// By quantile: how many products are below it at least, by its share, and at most.
-    below: Vec<[usize; 3]>,
+    /// Those that are asked for, of the products alone.
+    quantiles: Vec<SampleQuantile>,
 }
 
 impl Products {
@@ -70,7 +70,8 @@ impl Products {
         let limit = |count: usize| beta_quantile(1.0 - DOUBT, (count + 1) as f64, (simulations - count) as f64);
         let beyond = TUNING.beyond_error.map(limit);
         let reduced = description.reduced.len();
-        let below = description.statistics.quantiles.iter().map(|&share| ranks(share, simulations)).collect();
+        let asked = description.statistics.quantiles.iter();
+        let quantiles = asked.map(|&share| SampleQuantile::new(share, simulations, DOUBT)).collect();
         Ok(found.map(|(values, rows, numbers)| Self {
             samples,
             values,
@@ -79,7 +80,7 @@ impl Products {
             numbers,
             reduced,
             beyond,
-            below,
+            quantiles,
         }))
     }
 
@@ -96,12 +97,12 @@ impl Products {
             return None;
         }
         let values = self.values.iter().skip(row * self.outputs + output).step_by(self.rows * self.outputs);
-        Some(ControlVariate::new(values, surrogate, &self.below))
+        Some(ControlVariate::new(values, surrogate, &self.quantiles))
     }
 
     /// The same of a reduced output.
     pub fn of_reduced(&self, number: usize, surrogate: &[f64]) -> ControlVariate {
-        ControlVariate::new(self.of_number(number), surrogate, &self.below)
+        ControlVariate::new(self.of_number(number), surrogate, &self.quantiles)
     }
 
     /// How far the margins of a requirement differ from these values of its surrogate at the samples, and the share of
@@ -129,18 +130,6 @@ impl Products {
     fn of_number(&self, number: usize) -> impl Iterator<Item = &f64> {
         self.numbers.iter().skip(number).step_by(self.numbers.len() / self.samples.len())
     }
-}
-
-/// How many of so many products are below the quantile of a share at least, by the share, and at most (C. J. Clopper &
-/// E. S. Pearson, Biometrika 26 (1934) 404).
-fn ranks(share: f64, count: usize) -> [usize; 3] {
-    let numbers: Vec<usize> = (0..=count).collect();
-    let left = |seen: usize| (count - seen) as f64;
-    let is_few =
-        |&seen: &usize| seen < count && beta_quantile(1.0 - 0.5 * DOUBT, seen as f64 + 1.0, left(seen)) < share;
-    let is_not_many = |&seen: &usize| seen == 0 || beta_quantile(0.5 * DOUBT, seen as f64, left(seen) + 1.0) <= share;
-    let most = numbers.partition_point(is_not_many).saturating_sub(1);
-    [numbers.partition_point(is_few), (share * count as f64) as usize, most]
 }
 
 /// Simulations of which none differing by more than ε tells the share that does to a part of the smallest share beyond

@@ -232,7 +232,7 @@ impl<'a> Together<'a> {
 }
 
 /// The 95 % confidence interval of the share that fulfils something, by the sign of the errors.
-fn interval_of(fulfilled: &[[bool; 3]]) -> [f64; 2] {
+pub(super) fn interval_of(fulfilled: &[[bool; 3]]) -> [f64; 2] {
     let seen = |sign: usize| fulfilled.iter().filter(|own| own[sign]).count();
     [share_interval(seen(0), fulfilled.len())[0], share_interval(seen(2), fulfilled.len())[1]]
 }

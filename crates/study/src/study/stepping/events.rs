@@ -21,9 +21,7 @@ pub fn segmented(study: &Study) -> Result<Option<Schedule>, SimulationError> {
     let schedule = segments_of_samples(study, &event_samples(study))?;
     // A number that is accumulated over a motion is one of the whole of it.
     let accumulates = !study.description.reduced.is_empty() || !study.description.requirements.is_empty();
-    let duration = study.description.simulation.duration;
-    let lasts = |schedule: &Schedule| schedule.segments().is_some_and(|segments| segments.horizon >= duration);
-    Ok(schedule.filter(|schedule| !accumulates || lasts(schedule)))
+    Ok(schedule.filter(|schedule| !accumulates || lasts(study, schedule)))
 }
 
 /// Steps between the events that single samples meet, if there are any and these can be cut there up to the end.
@@ -32,8 +30,13 @@ pub fn segmented_samples(study: &Study) -> Result<Option<Schedule>, SimulationEr
         return Ok(None);
     }
     let schedule = segments_of_samples(study, &event_samples(study))?;
+    Ok(schedule.filter(|schedule| lasts(study, schedule)))
+}
+
+/// Whether motions are cut up to their end.
+fn lasts(study: &Study, schedule: &Schedule) -> bool {
     let duration = study.description.simulation.duration;
-    Ok(schedule.filter(|schedule| schedule.segments().is_some_and(|segments| segments.horizon >= duration)))
+    schedule.segments().is_some_and(|segments| segments.horizon >= duration)
 }
 
 /// Steps between the events of the nominal motion, if there are any and it can be followed, whatever its scheme.
