@@ -46,9 +46,9 @@ pub mod reduce {
 
 pub mod simulate {
     pub use crate::simulate::{
-        EnsembleRun, ExplicitJets, ExtrapolatedJets, Gradient, Integration, Integrator, Interruption, JetBox,
-        JetIntegrator, JetRun, NoGradient, Observed, Schedule, SimulationError, Simulator, Stepper, Steps, Wanted,
-        gradients, integrator, schedule_for_tolerance,
+        EnsembleRun, Gradient, Integration, Integrator, Interruption, JetBox, NoGradient, Observed, Schedule,
+        SimulationError, Simulator, Stepper, Steps, Wanted, gradients, integrator, jet_integrator,
+        schedule_for_tolerance,
     };
 }
 

@@ -8,8 +8,8 @@ use mbint::inner::compile::Scheme;
 use mbint::inner::model::{Analysis, Description, Formulation, Stepping};
 use mbint::inner::numerics::Sample;
 use mbint::inner::simulate::{
-    ExplicitJets, ExtrapolatedJets, Gradient, Integration, Interruption, JetBox, JetIntegrator, JetRun, NoGradient,
-    Schedule, Simulator, Wanted, gradients,
+    Gradient, Integration, Interruption, JetBox, NoGradient, Observed, Schedule, Simulator, Steps, Wanted, gradients,
+    jet_integrator,
 };
 use symdiff::jet::JetSpace;
 
@@ -56,18 +56,11 @@ enum Found {
 /// jets stop.
 fn by_jets(simulator: &Simulator, schedule: &Schedule, about: JetBox<'_>) -> Option<Vec<f64>> {
     let space = JetSpace::new(about.center.len(), 1);
-    let (rows, h) = (0..schedule.rows, schedule.first_step());
     let mut jets = Vec::new();
-    let stop = match schedule.integration {
-        Integration::Plain => JetRun::start(simulator, &space, about, h).unwrap().advance(schedule, rows, &mut jets),
-        Integration::Extrapolated { levels } => {
-            let mut run = ExtrapolatedJets::start(simulator, &space, about, h, levels).unwrap();
-            run.advance(schedule, rows, &mut jets)
-        }
-        _ => ExplicitJets::start(simulator, &space, about).unwrap().advance(schedule, rows, &mut jets),
-    };
+    let mut run = jet_integrator(simulator, &space, about, schedule).unwrap();
+    let stops = run.advance(Steps { schedule, controller: None }, 0..schedule.rows, Observed::Outputs, &mut jets);
     let derivatives = jets.chunks_exact(space.len()).flat_map(|jet| jet[1..].to_vec()).collect();
-    stop.is_none().then_some(derivatives)
+    stops.is_empty().then_some(derivatives)
 }
 
 fn compared(simulator: &Simulator, schedule: &Schedule) -> Found {

@@ -5,8 +5,8 @@ use mbint::inner::compile::Scheme;
 use mbint::inner::model::Description;
 use mbint::inner::numerics::Sample;
 use mbint::inner::simulate::{
-    EnsembleRun, Integrator, Interruption, JetBox, JetIntegrator, JetRun, Observed, Schedule, Simulator, Stepper,
-    Steps, schedule_for_tolerance,
+    EnsembleRun, Integrator, Interruption, JetBox, Observed, Schedule, Simulator, Stepper, Steps, jet_integrator,
+    schedule_for_tolerance,
 };
 use nalgebra::Matrix3;
 use symdiff::jet::JetSpace;
@@ -214,9 +214,10 @@ fn jets_are_the_derivatives_of_every_scheme() {
         let sample = nominal_sample(&simulator);
         let space = JetSpace::new(2, 1);
         let mut jets = Vec::new();
-        let mut run =
-            JetRun::start(&simulator, &space, JetBox { center: &sample, half_width: &[1.0, 1.0] }, h).unwrap();
-        assert_eq!(run.advance(&schedule, 0..schedule.rows, &mut jets), None);
+        let about = JetBox { center: &sample, half_width: &[1.0, 1.0] };
+        let mut run = jet_integrator(&simulator, &space, about, &schedule).unwrap();
+        let steps = Steps { schedule: &schedule, controller: None };
+        assert_eq!(run.advance(steps, 0..schedule.rows, Observed::Outputs, &mut jets), []);
         let moved = |by: f64| courses(&simulator, &schedule, vec![sample[0] + by, sample[1]].into());
         let (above, below) = (moved(half), moved(-half));
         for (index, jet) in jets.chunks_exact(space.len()).enumerate() {

@@ -1,13 +1,14 @@
 //! The integrator that a schedule asks for.
 
+use symdiff::WIDTHS;
 use symdiff::jet::JetSpace;
 
 use super::control::{Integration, Schedule};
-use super::ensemble::{EnsembleRun, ExtrapolatedJets, ExtrapolatedRun, JetBox, JetRun};
+use super::drive::{ClosedRows, Extrapolated, Integrator, TUNING};
+use super::ensemble::{EnsembleRun, JetBox, JetClosure, JetRun, RowClosure};
 use super::error::SimulationError;
 use super::events::SegmentRun;
 use super::explicit::{ExplicitJets, ExplicitRun};
-use super::integrator::{Integrator, JetIntegrator};
 use super::simulator::Simulator;
 use crate::numerics::Sample;
 
@@ -21,19 +22,37 @@ pub fn integrator<'s>(
     schedule: &'s Schedule,
 ) -> Result<Box<dyn Integrator<'s> + 's>, SimulationError> {
     if let Some(segments) = schedule.segments() {
-        return Ok(Box::new(SegmentRun::start(simulator, samples, segments, schedule.end())?));
+        return Ok(Box::new(SegmentRun::start(simulator, samples, segments, schedule.end())?.rows()));
     }
     let first_step = schedule.first_step();
     Ok(match schedule.integration {
         Integration::Plain => Box::new(EnsembleRun::start(simulator, samples, first_step)?),
         Integration::Extrapolated { levels } => {
-            Box::new(ExtrapolatedRun::start(simulator, samples, first_step, levels)?)
+            let closures = closures(simulator, samples, first_step)?;
+            let of_level = |share: f64| EnsembleRun::start(simulator, samples, share * first_step);
+            Box::new(Extrapolated::of(simulator, levels, closures, of_level)?)
         }
         Integration::Explicit | Integration::Segments => Box::new(ExplicitRun::start(simulator, samples)?),
     })
 }
 
-/// A jet, assembled, to be integrated as a schedule asks for; `is_controlled`: a tolerance decides the steps.
+/// Closures of the rows of samples.
+fn closures<'s>(
+    simulator: &'s Simulator,
+    samples: &[Sample],
+    first_step: f64,
+) -> Result<Vec<ClosedRows<RowClosure<'s>>>, SimulationError> {
+    let numbers: Vec<usize> = (0..samples.len()).collect();
+    let of_chunk = |own: &[usize]| {
+        let width = WIDTHS.into_iter().find(|&width| width >= own.len()).unwrap_or(own.len());
+        let sample = |lane: usize| samples[own[lane.min(own.len() - 1)]].clone();
+        let start = simulator.assemble(width, first_step, sample)?;
+        Ok(ClosedRows { samples: own.to_vec(), closure: RowClosure::new(simulator, &start)? })
+    };
+    numbers.chunks(TUNING.extrapolated_width).map(of_chunk).collect()
+}
+
+/// A jet, assembled, to be integrated as a schedule asks for.
 ///
 /// # Errors
 /// Where the centre cannot be assembled.
@@ -42,16 +61,16 @@ pub fn jet_integrator<'s>(
     space: &'s JetSpace,
     about: JetBox<'_>,
     schedule: &Schedule,
-    is_controlled: bool,
-) -> Result<Box<dyn JetIntegrator<'s> + 's>, SimulationError> {
+) -> Result<Box<dyn Integrator<'s> + 's>, SimulationError> {
     let first_step = schedule.first_step();
     Ok(match schedule.integration {
-        Integration::Plain => {
-            let jet = JetRun::start(simulator, space, about, first_step)?;
-            Box::new(if is_controlled { jet.controlled() } else { jet })
-        }
+        Integration::Plain => Box::new(JetRun::start(simulator, space, about, first_step)?),
         Integration::Extrapolated { levels } => {
-            Box::new(ExtrapolatedJets::start(simulator, space, about, first_step, levels)?)
+            let start = simulator.assemble(1, first_step, |_| about.center.iter().copied().collect())?;
+            let closure = JetClosure::new(simulator, space, about, &start)?;
+            let closures = vec![ClosedRows { samples: (0..space.len()).collect(), closure }];
+            let of_level = |share: f64| JetRun::start(simulator, space, about, share * first_step);
+            Box::new(Extrapolated::of(simulator, levels, closures, of_level)?)
         }
         Integration::Explicit | Integration::Segments => Box::new(ExplicitJets::start(simulator, space, about)?),
     })

@@ -24,6 +24,46 @@ impl<'a> Interruption<'a> {
     }
 }
 
+/// The question in a run of many steps.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct StepInterruption<'a> {
+    interruption: Interruption<'a>,
+    /// Steps since the run went on.
+    steps: usize,
+    is_cut: bool,
+}
+
+impl<'a> From<Interruption<'a>> for StepInterruption<'a> {
+    fn from(interruption: Interruption<'a>) -> Self {
+        Self { interruption, ..Self::default() }
+    }
+}
+
+impl<'a> StepInterruption<'a> {
+    /// The run goes on.
+    pub fn begin(&mut self) {
+        self.steps = 0;
+    }
+
+    /// Before a step: whether to end.
+    pub fn ends(&mut self) -> bool {
+        self.is_cut |= self.interruption.is_asked_in(self.steps);
+        self.steps += 1;
+        self.is_cut
+    }
+
+    /// Whether to end, asked at once: before a step that takes long, or a row.
+    pub fn ends_now(&mut self) -> bool {
+        self.is_cut |= self.interruption.is_asked();
+        self.is_cut
+    }
+
+    /// Whether it ended.
+    pub fn is_cut(&self) -> bool {
+        self.is_cut
+    }
+}
+
 /// Never.
 impl Default for Interruption<'_> {
     fn default() -> Self {

@@ -5,6 +5,7 @@
 
 use symdiff::Tile;
 
+use super::control::Schedule;
 use super::simulator::Simulator;
 use super::start::Assembly;
 use super::step::Stepper;
@@ -38,6 +39,11 @@ impl<'s> Instants<'s> {
     /// The first after a time and before another.
     pub fn between(self, from: f64, to: f64) -> Option<f64> {
         self.0.iter().filter_map(|sampled| sampled.due_between(from, to)).reduce(f64::min)
+    }
+
+    /// The steps of a schedule that lead to a row, divided at the instants in them: length and end of each, s.
+    pub fn steps_to(self, row: usize, schedule: &Schedule) -> impl Iterator<Item = (f64, f64)> {
+        schedule.steps_to(row).flat_map(move |(h, end)| self.divide(h, end))
     }
 
     /// A step of length h, divided at the instants in it: length and end of each part, s.

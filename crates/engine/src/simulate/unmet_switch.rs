@@ -11,9 +11,9 @@
 use symdiff::Tile;
 
 use super::control::Steps;
-use super::ensemble::{EnsembleRun, Observed};
+use super::drive::{Integrator, Observed};
+use super::ensemble::EnsembleRun;
 use super::error::SimulationError;
-use super::integrator::Integrator;
 use super::interruption::Interruption;
 use super::simulator::Simulator;
 use super::step::Counters;

@@ -17,7 +17,7 @@ use crate::compile::Tapes;
 use crate::model::Analysis;
 use crate::numerics::Sample;
 use crate::simulate::control::{Integration, Schedule};
-use crate::simulate::ensemble::{tiles, weights};
+use crate::simulate::drive::{tiles, weights};
 use crate::simulate::error::SimulationError;
 use crate::simulate::events::{EventAdjoints, EventSteps};
 use crate::simulate::explicit::{ExplicitAdjoints, ExplicitRow, ExplicitSteps};
@@ -57,8 +57,8 @@ pub enum NoGradient {
     Events,
 }
 
-/// Gradients of outputs of samples under a schedule, each as [`JetRun`](crate::simulate::JetRun) and its kin have the
-/// first derivatives.
+/// Gradients of outputs of samples under a schedule, each as [jets](crate::simulate::jet_integrator) have the first
+/// derivatives.
 ///
 /// # Errors
 /// Where samples cannot be assembled, or there are no motions; [`SimulationError::Interrupted`] where it is asked to
@@ -250,7 +250,7 @@ impl TileOf<'_> {
             let mut ends_of_rows = vec![0; rows.len()];
             let mut steps = Vec::new();
             for row in 0..=rows.first().copied().unwrap_or(0) {
-                steps.extend(refined.steps_to(row).flat_map(|(h, end)| instants.divide(h, end)));
+                steps.extend(instants.steps_to(row, &refined));
                 rows.iter()
                     .zip(&mut ends_of_rows)
                     .filter(|(known, _)| **known == row)

@@ -48,12 +48,13 @@ impl<'s> PartingWatch<'s> {
         changes.then_some(Self { simulator, layout, constraints, residuals, state, found: None })
     }
 
-    /// Examines the state at a time, which `read` writes into the layout's registers.
-    pub fn look(&mut self, time: f64, read: impl FnOnce(&mut Vec<f64>)) {
+    /// Examines the motion at a time: positions and velocities.
+    pub fn look<'v>(&mut self, time: f64, motion: impl Iterator<Item = &'v f64>) {
         if self.found.is_some() {
             return;
         }
-        read(&mut self.state);
+        let registers = self.layout.q.start..self.layout.v.end;
+        self.state[registers].iter_mut().zip(motion).for_each(|(own, value)| *own = *value);
         let system = &self.simulator.system;
         let residuals = values(self.simulator, self.layout, &self.residuals, &self.state, time);
         self.found = self.constraints.iter().zip(residuals).find_map(|(&constraint, residual)| {

@@ -9,19 +9,21 @@ use symdiff::{JetMemory, jet::JetSpace};
 use super::jet_states::{
     JetBox, accelerate, add_correction, assembled_jet, corrections, sample_states, set_parameters, shift_accelerations,
 };
-use super::observed::Stop;
 use crate::compile::Tapes;
-use crate::simulate::control::Schedule;
+use crate::simulate::control::Steps;
+use crate::simulate::drive::{Observed, RowTile, Stop, TiledRun};
 use crate::simulate::error::SimulationError;
-use crate::simulate::integrator::JetIntegrator;
-use crate::simulate::interruption::Interruption;
+use crate::simulate::interruption::StepInterruption;
 use crate::simulate::sampling::{Instants, Sampling};
 use crate::simulate::simulator::Simulator;
 use crate::simulate::step::{Counters, Stepper};
 
-/// The run of one jet.
+/// The run of one jet under the scheme.
+pub type JetRun<'s> = TiledRun<'s, SchemeJet<'s>>;
+
+/// One jet; its coefficients are the lanes.
 #[derive(Debug)]
-pub struct JetRun<'s> {
+pub struct SchemeJet<'s> {
     simulator: &'s Simulator,
     order: usize,
     /// The box's centre.
@@ -36,8 +38,8 @@ pub struct JetRun<'s> {
     /// Whether rows make their velocities consistent.
     projects: bool,
     step_size: f64,
-    interruption: Interruption<'s>,
-    is_cut: bool,
+    /// Whether it stopped.
+    is_lost: bool,
 }
 
 impl<'s> JetRun<'s> {
@@ -63,7 +65,7 @@ impl<'s> JetRun<'s> {
         let recomputes = simulator.solves_row_accelerations() || simulator.projects_row_velocities();
         let center = Stepper::new(program, &assembled);
         let sampling = Sampling::new(simulator, &assembled);
-        Ok(Self {
+        let jet = SchemeJet {
             simulator,
             order,
             center,
@@ -73,55 +75,69 @@ impl<'s> JetRun<'s> {
             sampling,
             projects: false,
             step_size: f64::NAN,
-            interruption: Interruption::default(),
-            is_cut: false,
-        })
+            is_lost: false,
+        };
+        Ok(Self::of(simulator, vec![jet]))
+    }
+}
+
+impl<'s> RowTile<'s> for SchemeJet<'s> {
+    type Plan<'p> = Steps<'p>;
+
+    fn plan<'p>(_: &Simulator, steps: Steps<'p>) -> Steps<'p> {
+        steps
     }
 
-    /// For steps that are controlled by a tolerance: rows make their velocities consistent.
-    #[must_use]
-    pub fn controlled(mut self) -> Self {
-        self.projects = self.simulator.projects_row_velocities();
-        self
+    fn width(&self) -> usize {
+        self.memory.jet(self.simulator.program.layout.time).len()
     }
 
-    /// As `advance`, and records positions and velocities (2n) in place of outputs.
-    pub fn advance_motion(
-        &mut self,
-        schedule: &Schedule,
-        rows: std::ops::Range<usize>,
-        into: &mut Vec<f64>,
-    ) -> Option<Stop> {
-        let layout = &self.simulator.program.layout;
-        into.clear();
-        for row in rows {
-            if let Some(stop) = self.advance_to(schedule, row) {
-                return Some(stop);
-            }
-            for register in layout.q.clone().chain(layout.v.clone()) {
-                into.extend_from_slice(self.memory.jet(register));
-            }
-        }
-        None
+    fn samples(&self) -> Vec<usize> {
+        (0..self.width()).collect()
     }
 
-    /// Advances to a row from the one before; where the run stopped, if it did.
-    fn advance_to(&mut self, schedule: &Schedule, row: usize) -> Option<Stop> {
-        let instants = Instants::of(self.simulator);
-        for (h, end) in schedule.steps_to(row).flat_map(|(h, end)| instants.divide(h, end)) {
-            self.is_cut |= self.interruption.is_asked();
-            if self.is_cut {
-                return None;
+    /// Where a tolerance controls the steps, rows make their velocities consistent.
+    fn begin(&mut self, Steps { controller, .. }: &Steps<'_>, _: Observed) {
+        self.projects = controller.is_some() && self.simulator.projects_row_velocities();
+    }
+
+    fn reach(&mut self, plan: &Steps<'_>, row: usize, asked: &mut StepInterruption<'s>) -> Vec<Stop> {
+        for (h, end) in Instants::of(self.simulator).steps_to(row, plan.schedule) {
+            if self.is_lost || asked.ends_now() {
+                break;
             }
             if let Err(singular) = self.step(h, end) {
+                self.is_lost = true;
                 let equation = self.center.worst_equation(0);
-                return Some(Stop { sample: 0, row, time: end, equation, open: None, singular });
+                return vec![Stop { sample: 0, row, time: end, equation, open: None, singular }];
             }
             self.sample(end);
         }
-        None
+        Vec::new()
     }
 
+    fn record(&mut self, observed: Observed, into: &mut [f64]) {
+        if self.is_lost {
+            return into.fill(f64::NAN);
+        }
+        let layout = &self.simulator.program.layout;
+        let motion = if observed == Observed::Outputs { 0..0 } else { layout.q.start..layout.v.end };
+        let (before, outputs) = into.split_at_mut(motion.len() * self.width());
+        for (register, jet) in motion.zip(before.chunks_exact_mut(self.width())) {
+            jet.copy_from_slice(self.memory.jet(register));
+        }
+        if !outputs.is_empty() {
+            self.observe(outputs);
+        }
+    }
+
+    /// Those of the centre.
+    fn counters(&self) -> Counters {
+        self.center.counters()
+    }
+}
+
+impl SchemeJet<'_> {
     /// Lets the states change that do so at this time.
     fn sample(&mut self, time: f64) {
         let Some(sampling) = &mut self.sampling else { return };
@@ -147,9 +163,9 @@ impl<'s> JetRun<'s> {
         }
     }
 
-    /// Appends the outputs. Their accelerations are those of [`super::row_accelerations`]; where these have no jet,
+    /// The outputs (output, coefficient). Their accelerations are those of [`super::row_accelerations`]; where these have no jet,
     /// those of the steps.
-    fn observe(&mut self, into: &mut Vec<f64>) {
+    fn observe(&mut self, into: &mut [f64]) {
         let layout = &self.simulator.program.layout;
         let unknowns = layout.v.start..layout.lambda.end;
         let own: Vec<Vec<f64>> = match &mut self.start {
@@ -178,8 +194,9 @@ impl<'s> JetRun<'s> {
             }
         };
         self.memory.run(self.simulator.program.observe());
-        for &register in &self.simulator.program.outputs {
-            into.extend_from_slice(self.memory.jet(register));
+        let lines = into.chunks_exact_mut(self.width());
+        for (line, &register) in lines.zip(&self.simulator.program.outputs) {
+            line.copy_from_slice(self.memory.jet(register));
         }
         for (register, own) in unknowns.zip(&own) {
             self.memory.jet_mut(register).copy_from_slice(own);
@@ -247,31 +264,5 @@ impl<'s> JetRun<'s> {
         self.memory.set_constant(layout.step, h);
         self.memory.run(program.step_size());
         self.step_size = h;
-    }
-}
-
-impl<'s> JetIntegrator<'s> for JetRun<'s> {
-    fn heed(&mut self, interruption: Interruption<'s>) {
-        self.interruption = interruption;
-    }
-
-    fn is_cut(&self) -> bool {
-        self.is_cut
-    }
-
-    fn advance(&mut self, schedule: &Schedule, rows: std::ops::Range<usize>, into: &mut Vec<f64>) -> Option<Stop> {
-        into.clear();
-        for row in rows {
-            if let Some(stop) = self.advance_to(schedule, row) {
-                return Some(stop);
-            }
-            self.observe(into);
-        }
-        None
-    }
-
-    /// Those of the centre.
-    fn counters(&self) -> Counters {
-        self.center.counters()
     }
 }

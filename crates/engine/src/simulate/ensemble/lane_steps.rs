@@ -12,7 +12,7 @@ use crate::compile::Tapes;
 use crate::simulate::control::tuning::TUNING as CONTROL;
 use crate::simulate::control::{Adaptive, Controller, SwitchWatch};
 use crate::simulate::features::FeatureWatch;
-use crate::simulate::interruption::Interruption;
+use crate::simulate::interruption::StepInterruption;
 use crate::simulate::simulator::Simulator;
 use crate::simulate::step::{StepFailure, Stepper};
 
@@ -27,8 +27,6 @@ pub(super) struct LaneSteps<'s> {
     alone: Vec<Option<Box<Adaptive<'s>>>>,
     /// Sum of each lane's local errors over the tolerance.
     error_ratios: Vec<f64>,
-    interruption: Interruption<'s>,
-    is_cut: bool,
 }
 
 impl<'s> LaneSteps<'s> {
@@ -43,19 +41,7 @@ impl<'s> LaneSteps<'s> {
             features: simulator.features().map(FeatureWatch::new),
             alone: (0..width).map(|_| None).collect(),
             error_ratios: vec![0.0; width],
-            interruption: Interruption::default(),
-            is_cut: false,
         }
-    }
-
-    /// Ends where it is asked to.
-    pub fn heeding(self, interruption: Interruption<'s>) -> Self {
-        Self { interruption, ..self }
-    }
-
-    /// Whether a lane's steps ended at an interruption: its state is not that of the last step's end.
-    pub fn is_cut(&self) -> bool {
-        self.is_cut
     }
 
     /// Sum of each lane's local errors over the tolerance.
@@ -63,8 +49,15 @@ impl<'s> LaneSteps<'s> {
         &self.error_ratios
     }
 
-    /// A step of the schedule, as [`Stepper::step`] does it.
-    pub fn step(&mut self, stepper: &mut Stepper<'s>, h: f64, end: f64) -> Vec<StepFailure> {
+    /// A step of the schedule, as [`Stepper::step`] does it. Where it is to end, the lanes' states are not those of the
+    /// step's end.
+    pub fn step(
+        &mut self,
+        stepper: &mut Stepper<'s>,
+        h: f64,
+        end: f64,
+        asked: &mut StepInterruption<'_>,
+    ) -> Vec<StepFailure> {
         let start = stepper.tile().lane(self.simulator.program.layout.time)[0];
         stepper.set_step_size(h);
         let before = stepper.save();
@@ -103,7 +96,7 @@ impl<'s> LaneSteps<'s> {
                 Some(alone) => alone,
                 None => self.detached(stepper, lane, h, Some(&before)),
             };
-            match self.advance(&mut alone, stepper, (start, end)) {
+            match self.advance(&mut alone, stepper, (start, end), asked) {
                 Ok(ratio) => {
                     self.error_ratios[lane] += ratio;
                     alone.stepper.set_step_size(h);
@@ -161,13 +154,13 @@ impl<'s> LaneSteps<'s> {
         alone: &mut Adaptive<'s>,
         stepper: &mut Stepper<'s>,
         (start, end): (f64, f64),
+        asked: &mut StepInterruption<'_>,
     ) -> Result<f64, ()> {
         let counted = alone.stepper.counters();
         alone.stepper.refine(stepper.refines());
         let (mut time, mut sum, mut reached) = (start, 0.0, false);
-        for step in 0..TUNING.most_lane_steps {
-            if self.interruption.is_asked_in(step + 1) {
-                self.is_cut = true;
+        for _ in 0..TUNING.most_lane_steps {
+            if asked.ends() {
                 break;
             }
             let attempt = alone.attempt(time, end);

@@ -7,8 +7,8 @@
 use symdiff::{JetMemory, Tile, jet::JetSpace};
 
 use super::jet_states::{JetBox, add_correction, assembled_jet, corrections, sample_states, solve_accelerations};
-use super::observed::Observed;
-use crate::compile::{Layout, StartProgram, Tapes};
+use crate::compile::{StartProgram, Tapes};
+use crate::simulate::drive::{Motion, RowState};
 use crate::simulate::error::SimulationError;
 use crate::simulate::simulator::Simulator;
 use crate::simulate::start::Assembly;
@@ -68,11 +68,6 @@ impl<'s> RowClosure<'s> {
         self.assembly.tile()
     }
 
-    /// The registers of the state.
-    pub fn layout(&self) -> &'s Layout {
-        &self.program.layout
-    }
-
     /// Sets the inputs.
     pub fn set_inputs(&mut self, values: &[f64]) {
         self.program.layout.set_inputs(self.assembly.tile_mut(), values);
@@ -83,13 +78,7 @@ impl<'s> RowClosure<'s> {
         self.assembly.tile_mut().lane_mut(self.program.layout.time)
     }
 
-    /// Makes a motion (2n lines, q and v, lane by lane) consistent at a time.
-    pub fn close(&mut self, time: f64, motion: &mut [f64]) {
-        self.times_mut().fill(time);
-        self.close_at_times(motion);
-    }
-
-    /// The same at the lanes' [times](Self::times_mut).
+    /// Makes a motion (2n lines, q and v, lane by lane) consistent at the lanes' [times](Self::times_mut).
     pub fn close_at_times(&mut self, motion: &mut [f64]) {
         let layout = &self.program.layout;
         let width = self.assembly.tile().width();
@@ -111,13 +100,8 @@ impl<'s> RowClosure<'s> {
         motion.copy_from_slice(&self.assembly.tile().values()[registers]);
     }
 
-    /// Rates (v, w; 2n lines) of a state (q, v) at a time, which need not be consistent.
-    pub fn rate(&mut self, time: f64, state: &[f64], into: &mut [f64]) {
-        self.times_mut().fill(time);
-        self.rate_at_times(state, into);
-    }
-
-    /// The same at the lanes' [times](Self::times_mut).
+    /// Rates (v, w; 2n lines) of a state (q, v), which need not be consistent, at the lanes'
+    /// [times](Self::times_mut).
     pub fn rate_at_times(&mut self, state: &[f64], into: &mut [f64]) {
         let layout = &self.program.layout;
         let width = self.assembly.tile().width();
@@ -136,9 +120,27 @@ impl<'s> RowClosure<'s> {
         into[n..].copy_from_slice(self.assembly.tile().block(layout.w.clone()));
     }
 
-    /// Gives the states that change at a time their new values, where there are any; `state` is q and v then (2n
-    /// lines).
-    pub fn sample(&mut self, time: f64, state: &mut [f64]) -> bool {
+    /// Forgets accelerations and multipliers, from which the next are corrected.
+    pub fn forget(&mut self) {
+        let layout = &self.program.layout;
+        for register in layout.w.start..layout.lambda.end {
+            self.assembly.tile_mut().lane_mut(register).fill(0.0);
+        }
+    }
+}
+
+impl Motion for RowClosure<'_> {
+    fn rate(&mut self, time: f64, state: &[f64], into: &mut [f64]) {
+        self.times_mut().fill(time);
+        self.rate_at_times(state, into);
+    }
+
+    fn close(&mut self, time: f64, motion: &mut [f64]) {
+        self.times_mut().fill(time);
+        self.close_at_times(motion);
+    }
+
+    fn sample(&mut self, time: f64, state: &mut [f64]) -> bool {
         if !self.program.sampled.iter().any(|sampled| sampled.is_due(time)) {
             return false;
         }
@@ -152,25 +154,16 @@ impl<'s> RowClosure<'s> {
         state.copy_from_slice(&self.assembly.tile().values()[registers]);
         true
     }
+}
 
-    /// Forgets accelerations and multipliers, from which the next are corrected.
-    pub fn forget(&mut self) {
-        let layout = &self.program.layout;
-        for register in layout.w.start..layout.lambda.end {
-            self.assembly.tile_mut().lane_mut(register).fill(0.0);
-        }
+impl RowState for RowClosure<'_> {
+    const IS_JET: bool = false;
+
+    fn width(&self) -> usize {
+        self.assembly.tile().width()
     }
 
-    /// Values (line, lane) of the motion that was closed last: the outputs, behind the motion if it is observed.
-    pub fn record(&mut self, observed: Observed, motion: &[f64], into: &mut [f64]) {
-        let own = if observed == Observed::Outputs { 0 } else { motion.len() };
-        let (before, outputs) = into.split_at_mut(own);
-        before.copy_from_slice(&motion[..own]);
-        self.observe(outputs);
-    }
-
-    /// Outputs (output, lane) of the state that was closed last.
-    pub fn observe(&mut self, into: &mut [f64]) {
+    fn observe(&mut self, into: &mut [f64]) {
         if self.needs.accelerations {
             self.assembly.accelerate();
         }
@@ -242,13 +235,7 @@ impl<'s> JetClosure<'s> {
         self.memory.jet_mut(self.program.layout.time)
     }
 
-    /// Rates (v, w; 2n jets) of a state (q, v) at a time.
-    pub fn rate(&mut self, time: f64, state: &[f64], into: &mut [f64]) {
-        self.memory.set_constant(self.program.layout.time, time);
-        self.rate_at_time(state, into);
-    }
-
-    /// The same at the jet's own [time](Self::time_mut).
+    /// Rates (v, w; 2n jets) of a state (q, v) at the jet's own [time](Self::time_mut).
     pub fn rate_at_time(&mut self, state: &[f64], into: &mut [f64]) {
         let layout = &self.program.layout;
         let terms = state.len() / (2 * layout.q.len());
@@ -268,33 +255,7 @@ impl<'s> JetClosure<'s> {
         }
     }
 
-    /// Gives the states that change at a time their new values, where there are any; `state` is q and v then (2n jets).
-    pub fn sample(&mut self, time: f64, state: &mut [f64]) -> bool {
-        if !self.program.sampled.iter().any(|sampled| sampled.is_due(time)) {
-            return false;
-        }
-        let layout = &self.program.layout;
-        let registers = layout.q.start..layout.v.end;
-        let terms = state.len() / registers.len();
-        for (register, jet) in registers.clone().zip(state.chunks_exact(terms)) {
-            self.memory.jet_mut(register).copy_from_slice(jet);
-        }
-        self.memory.set_constant(layout.time, time);
-        solve_accelerations(self.program, &mut self.memory, self.order);
-        sample_states(self.program, &mut self.memory, time);
-        for (register, jet) in registers.zip(state.chunks_exact_mut(terms)) {
-            jet.copy_from_slice(self.memory.jet(register));
-        }
-        true
-    }
-
-    /// Makes a motion (2n jets, q and v) consistent at a time.
-    pub fn close(&mut self, time: f64, motion: &mut [f64]) {
-        self.memory.set_constant(self.program.layout.time, time);
-        self.close_at_time(motion);
-    }
-
-    /// The same at the jet's own [time](Self::time_mut).
+    /// Makes a motion (2n jets, q and v) consistent at the jet's own [time](Self::time_mut).
     pub fn close_at_time(&mut self, motion: &mut [f64]) {
         let layout = &self.program.layout;
         let unknowns = layout.q.start..layout.v.end;
@@ -317,15 +278,54 @@ impl<'s> JetClosure<'s> {
             jet.copy_from_slice(self.memory.jet(register));
         }
     }
+}
 
-    /// Appends the outputs of the state that was closed last, coefficient by coefficient.
-    pub fn observe(&mut self, into: &mut Vec<f64>) {
+impl Motion for JetClosure<'_> {
+    fn rate(&mut self, time: f64, state: &[f64], into: &mut [f64]) {
+        self.memory.set_constant(self.program.layout.time, time);
+        self.rate_at_time(state, into);
+    }
+
+    fn close(&mut self, time: f64, motion: &mut [f64]) {
+        self.memory.set_constant(self.program.layout.time, time);
+        self.close_at_time(motion);
+    }
+
+    fn sample(&mut self, time: f64, state: &mut [f64]) -> bool {
+        if !self.program.sampled.iter().any(|sampled| sampled.is_due(time)) {
+            return false;
+        }
+        let layout = &self.program.layout;
+        let registers = layout.q.start..layout.v.end;
+        let terms = state.len() / registers.len();
+        for (register, jet) in registers.clone().zip(state.chunks_exact(terms)) {
+            self.memory.jet_mut(register).copy_from_slice(jet);
+        }
+        self.memory.set_constant(layout.time, time);
+        solve_accelerations(self.program, &mut self.memory, self.order);
+        sample_states(self.program, &mut self.memory, time);
+        for (register, jet) in registers.zip(state.chunks_exact_mut(terms)) {
+            jet.copy_from_slice(self.memory.jet(register));
+        }
+        true
+    }
+}
+
+impl RowState for JetClosure<'_> {
+    const IS_JET: bool = true;
+
+    fn width(&self) -> usize {
+        self.memory.jet(self.program.layout.time).len()
+    }
+
+    fn observe(&mut self, into: &mut [f64]) {
         if self.needs.accelerations {
             solve_accelerations(self.program, &mut self.memory, self.order);
         }
         self.memory.run(self.program.observe());
-        for &register in &self.program.outputs {
-            into.extend_from_slice(self.memory.jet(register));
+        let width = self.width();
+        for (line, &register) in into.chunks_exact_mut(width).zip(&self.program.outputs) {
+            line.copy_from_slice(self.memory.jet(register));
         }
     }
 }

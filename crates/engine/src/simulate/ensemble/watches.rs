@@ -1,8 +1,8 @@
 //! What is watched in each step of a tile, beside the steps themselves. None of it changes a state.
 
-use super::observed::Observed;
 use super::switch_extents::SwitchExtents;
 use crate::simulate::diagnostics::{OverlapWatch, PartingWatch, SingularWatch};
+use crate::simulate::drive::Observed;
 use crate::simulate::features::FeatureWatch;
 use crate::simulate::simulator::Simulator;
 use crate::simulate::step::Stepper;
@@ -62,7 +62,7 @@ impl<'s> Watches<'s> {
             singular.look(stepper, end);
         }
         if let Some(parting) = &mut self.parting {
-            parting.look(end, |state| stepper.copy_lane(0, state));
+            parting.look(end, stepper.motion_of(0));
         }
         if let Some(switches) = &mut self.switches {
             switches.end(stepper, h);

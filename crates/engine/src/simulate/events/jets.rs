@@ -14,9 +14,9 @@ use super::segments::Segments;
 use super::tuning::TUNING;
 use crate::compile::{SwitchProgram, Tapes};
 use crate::numerics::{Sample, SegmentMotions};
+use crate::simulate::drive::Motion;
 use crate::simulate::ensemble::{JetBox, JetClosure};
 use crate::simulate::error::SimulationError;
-use crate::simulate::explicit::runge_kutta::Motion;
 use crate::simulate::simulator::Simulator;
 
 /// Segments of a jet on a time from 0 to 1.

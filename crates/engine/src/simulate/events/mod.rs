@@ -8,7 +8,7 @@
 //! - `path`: one sample by the explicit method, whose steps end at events, and `followed`: its word;
 //! - `word`: the words of some samples, and `boundary`: the surfaces between them;
 //! - `stretched`: segments on a time from 0 to 1, `nodes`: states there, and `tile`: samples on it in lockstep;
-//! - `run`: an ensemble, row by row, and `jets`: a jet;
+//! - `run`: an ensemble, `rows`: its rows, and `jets`: a jet;
 //! - `saltation`: adjoints through events.
 
 mod boundary;
@@ -17,6 +17,7 @@ mod jets;
 pub(in crate::simulate) mod locate;
 mod nodes;
 mod path;
+mod rows;
 mod run;
 mod saltation;
 pub(in crate::simulate) mod segments;

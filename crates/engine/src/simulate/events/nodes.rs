@@ -1,7 +1,8 @@
 //! States at the nodes of the steps of a segment.
 
 use crate::numerics::{STEP_NODES, step_nodes};
-use crate::simulate::explicit::runge_kutta::{Motion, RungeKutta};
+use crate::simulate::drive::Motion;
+use crate::simulate::explicit::runge_kutta::RungeKutta;
 
 /// Takes the steps of a segment, which end at these shares of it: the states at their nodes. `at_end` sees the motion
 /// with the rates at the segment's end.

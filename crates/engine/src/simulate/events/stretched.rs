@@ -1,8 +1,8 @@
 //! Segments of all lanes on a time of their own, which runs from 0 to 1: each lane's rates are those of its time times
 //! the segment's length.
 
+use crate::simulate::drive::Motion;
 use crate::simulate::ensemble::RowClosure;
-use crate::simulate::explicit::runge_kutta::Motion;
 
 /// A tile of samples on their way through a segment.
 #[derive(Debug)]

@@ -351,7 +351,7 @@ fn interpolation(share: f64) -> (f64, [f64; WITH_DENSE]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::simulate::explicit::runge_kutta::Motion;
+    use crate::simulate::drive::Motion;
 
     /// x' = v + t², v' = −x²: rates that differ in all stages.
     struct Falling;

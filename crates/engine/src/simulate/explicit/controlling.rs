@@ -1,11 +1,12 @@
 //! Samples that decide on the steps, all of them in step.
 
 use super::movement::Movement;
-use super::run::{Tile, tiles};
 use super::runge_kutta::StepError;
+use super::tile::{ExplicitTile, tiles};
 use super::tuning::TUNING;
 use crate::numerics::Sample;
 use crate::simulate::control::SwitchWatch;
+use crate::simulate::ensemble::RowClosure;
 use crate::simulate::error::SimulationError;
 use crate::simulate::features::{FeatureWork, Features, Passage};
 use crate::simulate::simulator::Simulator;
@@ -13,7 +14,7 @@ use crate::simulate::simulator::Simulator;
 /// Controlling samples in step.
 #[derive(Debug)]
 pub(super) struct Tiles<'s> {
-    tiles: Vec<Tile<'s>>,
+    tiles: Vec<ExplicitTile<'s, RowClosure<'s>>>,
     /// Where equations switch, of a sample that is the only one: steps that end where some do would hide their effect
     /// on the others between.
     watch: Option<SwitchWatch<'s>>,

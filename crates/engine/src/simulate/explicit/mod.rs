@@ -10,20 +10,18 @@
 //! - `movement`: how far the motion has gone, which errors count against;
 //! - `controlling`: the samples that decide on the steps, and where their equations switch;
 //! - `steps`: the steps that a tolerance asks for, and what stands against the method;
-//! - `run`: samples over a schedule, and `jets`: a jet over it.
+//! - `tile`: samples, or a jet, over a schedule.
 
 mod adjoint;
 mod controlling;
-mod jets;
 pub(in crate::simulate) mod movement;
-mod run;
 pub(in crate::simulate) mod runge_kutta;
 mod steps;
 mod tableau;
+mod tile;
 pub(crate) mod tuning;
 
 pub(in crate::simulate) use adjoint::{ExplicitAdjoints, ExplicitRow, ExplicitSteps};
-pub use jets::ExplicitJets;
-pub use run::ExplicitRun;
 pub use steps::{ExplicitObstacle, explicit_schedule};
 pub(crate) use tableau::{DENSE, STAGES, TIMES, WEIGHTS, WITH_DENSE};
+pub(in crate::simulate) use tile::{ExplicitJets, ExplicitRun};

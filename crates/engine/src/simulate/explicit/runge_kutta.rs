@@ -4,18 +4,7 @@
 use symdiff::{Vectorise, vectorised};
 
 use super::tableau::{DENSE, FIFTH, Row, STAGES, THIRD, TIMES, WEIGHTS, WITH_DENSE};
-
-/// Integrated system.
-pub(in crate::simulate) trait Motion {
-    /// Rates v, w (2n lines) of a state q, v at a time.
-    fn rate(&mut self, time: f64, state: &[f64], into: &mut [f64]);
-
-    /// Moves a state onto the constraints.
-    fn close(&mut self, time: f64, state: &mut [f64]);
-
-    /// Gives what changes at instants its new values; whether the time is one.
-    fn sample(&mut self, time: f64, state: &mut [f64]) -> bool;
-}
+use crate::simulate::drive::Motion;
 
 /// Terms of the dense output: the change, two of the ends' rates, and four of all stages.
 const TERMS: usize = 3 + DENSE.len();

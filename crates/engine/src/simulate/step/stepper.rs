@@ -356,6 +356,12 @@ impl<'p> Stepper<'p> {
         self.copy(self.program.outputs.iter().copied(), into);
     }
 
+    /// Positions and velocities of a lane now.
+    pub(in crate::simulate) fn motion_of(&self, lane: usize) -> impl Iterator<Item = &f64> {
+        let layout = &self.program.layout;
+        self.tile.block(layout.q.start..layout.v.end).iter().skip(lane).step_by(self.tile.width())
+    }
+
     /// Positions and velocities now: coordinate by coordinate, lane by lane; NaN for lanes that no longer run.
     pub fn copy_motion(&self, into: &mut [f64]) {
         let layout = &self.program.layout;

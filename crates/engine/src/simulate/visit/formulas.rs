@@ -6,7 +6,7 @@ use symdiff::jet::JetSpace;
 use super::{Visit, reduced_rows};
 use crate::compile::Tapes;
 use crate::numerics::Sample;
-use crate::simulate::ensemble::Channel;
+use crate::simulate::drive::Channel;
 use crate::simulate::simulator::Simulator;
 use crate::simulate::start::Assembly;
 

@@ -6,7 +6,7 @@ use symdiff::jet::JetSpace;
 use crate::compile::{StartProgram, Tapes};
 use crate::model::Analysis;
 use crate::numerics::Sample;
-use crate::simulate::ensemble::Stop;
+use crate::simulate::drive::Stop;
 use crate::simulate::error::SimulationError;
 use crate::simulate::interruption::Interruption;
 use crate::simulate::simulator::Simulator;

@@ -12,7 +12,7 @@ use crate::assemble::EquationId;
 use crate::numerics::Sample;
 use crate::simulate::control::Schedule;
 use crate::simulate::diagnostics::SingularPass;
-use crate::simulate::ensemble::{Accumulator, Channel, Stop};
+use crate::simulate::drive::{Accumulator, Channel, Stop};
 use crate::simulate::error::{SimulationError, assembly_error};
 use crate::simulate::interruption::Interruption;
 use crate::simulate::simulator::Simulator;

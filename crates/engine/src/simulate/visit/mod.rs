@@ -19,7 +19,7 @@ pub use rows::reduced_rows;
 
 use super::control::Steps;
 use super::diagnostics::SingularPass;
-use super::ensemble::{Channel, Stop};
+use super::drive::{Channel, Stop};
 use super::error::SimulationError;
 use super::interruption::Interruption;
 use super::simulator::Simulator;

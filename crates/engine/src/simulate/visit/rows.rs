@@ -1,6 +1,6 @@
 //! Outputs in rows, reduced to one number a channel.
 
-use crate::simulate::ensemble::{Accumulator, Channel};
+use crate::simulate::drive::{Accumulator, Channel};
 
 /// What the outputs of one sample are reduced to, channel by channel, given all of them (row by row) at these times,
 /// s. Between rows an output is the cubic through four of them.

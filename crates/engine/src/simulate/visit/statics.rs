@@ -2,7 +2,7 @@
 
 use super::Visit;
 use crate::numerics::Sample;
-use crate::simulate::ensemble::{Accumulator, Channel};
+use crate::simulate::drive::{Accumulator, Channel};
 use crate::simulate::error::SimulationError;
 use crate::simulate::simulator::Simulator;
 

@@ -9,7 +9,7 @@ use super::tuning::TUNING;
 use super::visits::visit_jets;
 use super::{Motions, effort, stopped_at};
 use crate::methods::{JET_WORK, Simulated};
-use crate::simulate::{JetBox, SimulationError, jet_integrator};
+use crate::simulate::{JetBox, Observed, SimulationError, jet_integrator};
 
 /// As [`Ensemble::jets`](crate::methods::Ensemble::jets).
 ///
@@ -39,16 +39,17 @@ pub fn jet_about(
     about: JetBox,
     reduce: &mut dyn FnMut(Rows<usize>, &[f64]),
 ) -> Result<Simulated, SimulationError> {
-    let is_controlled = motions.tolerance.is_some();
-    let mut jet = jet_integrator(motions.simulator, space, about, motions.schedule, is_controlled)?;
+    let mut jet = jet_integrator(motions.simulator, space, about, motions.schedule)?;
     jet.heed(motions.interruption);
     let (mut values, mut stop, mut next) = (Vec::new(), None, 0);
     while next < motions.schedule.rows && stop.is_none() {
         let rows = next..(next + TUNING.rows_of_jets).min(motions.schedule.rows);
-        stop = jet.advance(motions.schedule, rows.clone(), &mut values);
+        stop = jet.advance(motions.steps(), rows.clone(), Observed::Outputs, &mut values).into_iter().next();
         if jet.is_cut() {
             break;
         }
+        let reached = stop.map_or(rows.end, |stop| stop.row);
+        values.truncate(values.len() / rows.len() * (reached - rows.start));
         reduce(rows.clone(), &values);
         motions.progress.advance(JET_WORK * (space.monomials().order() + 1) * rows.len());
         next = rows.end;

@@ -1,16 +1,18 @@
-//! Ways to integrate an ensemble of samples, or one jet in the parameters: what all of them can do.
+//! What all ways to integrate can do, for an ensemble of samples and for one jet in the parameters.
 
 use std::fmt::Debug;
 use std::ops::Range;
 
-use super::control::{Schedule, Steps};
-use super::diagnostics::{OpenConstraint, SingularPass, TooDeep};
-use super::ensemble::{Channel, Observed, Stop};
-use super::error::SimulationError;
-use super::interruption::Interruption;
-use super::step::Counters;
+use super::observed::{Observed, Stop};
+use super::reduction::Channel;
+use crate::simulate::control::{Schedule, Steps};
+use crate::simulate::diagnostics::{OpenConstraint, SingularPass, TooDeep};
+use crate::simulate::error::SimulationError;
+use crate::simulate::interruption::Interruption;
+use crate::simulate::step::Counters;
 
-/// An ensemble of samples that is integrated in one way. Further questions come before the first row.
+/// An ensemble of samples, or one jet in the parameters, that is integrated in one way. Further questions come before
+/// the first row. The coefficients of a jet stand for samples; all of them stop where one does.
 pub trait Integrator<'s>: Debug {
     /// Also searches for singular configurations that the first sample passes, and for constraints that open.
     fn watch(&mut self);
@@ -68,23 +70,5 @@ pub trait Integrator<'s>: Debug {
     /// The sample with the largest sum of local errors over the tolerance, and that sum.
     fn largest_error_ratio(&self) -> Option<(usize, f64)> {
         None
-    }
-}
-
-/// One jet in the parameters that is integrated in one way.
-pub trait JetIntegrator<'s>: Debug {
-    /// Ends where it is asked to.
-    fn heed(&mut self, interruption: Interruption<'s>);
-
-    /// Whether it ended at an interruption: the rows of the last call are not known, and others do not follow.
-    fn is_cut(&self) -> bool;
-
-    /// Advances to `rows`, which follow the rows of the last call, and records the outputs: row by row, output by
-    /// output, coefficient by coefficient. Returns where the run stopped, if it did.
-    fn advance(&mut self, schedule: &Schedule, rows: Range<usize>, into: &mut Vec<f64>) -> Option<Stop>;
-
-    /// Newton iterations and rank-revealing solves so far.
-    fn counters(&self) -> Counters {
-        Counters::default()
     }
 }

@@ -1,7 +1,5 @@
 //! Values that a run records, and how it tells that a sample stopped.
 
-use std::ops::Range;
-
 use crate::assemble::EquationId;
 use crate::simulate::diagnostics::OpenConstraint;
 use crate::simulate::simulator::Simulator;
@@ -50,25 +48,29 @@ pub struct Stop {
     pub singular: bool,
 }
 
-/// The samples that stop in a row of a tile, since their state (q and v, 2n lines, lane by lane) is not finite; their
-/// values (line, lane) become NaN. The first lanes are these samples.
-pub(in crate::simulate) fn stops_of_lost(
+/// The first lanes, so many, that stop in a row since their state (q and v, 2n lines, lane by lane) is not finite.
+pub(in crate::simulate) fn lost_lanes(
     alive: &mut [bool],
-    samples: Range<usize>,
+    count: usize,
     state: &[f64],
     row: usize,
     time: f64,
-    values: &mut [f64],
 ) -> Vec<Stop> {
     let (width, mut stops) = (alive.len(), Vec::new());
     for (lane, alive) in alive.iter_mut().enumerate() {
         let lost = state.iter().skip(lane).step_by(width).position(|value| !value.is_finite());
         let Some(line) = lost else { continue };
-        if std::mem::replace(alive, false) && lane < samples.len() {
+        if std::mem::replace(alive, false) && lane < count {
             let equation = EquationId::new(line % (state.len() / width / 2).max(1));
-            stops.push(Stop { sample: samples.start + lane, row, time, equation, open: None, singular: false });
+            stops.push(Stop { sample: lane, row, time, equation, open: None, singular: false });
         }
-        values.iter_mut().skip(lane).step_by(width).for_each(|value| *value = f64::NAN);
     }
     stops
+}
+
+/// Values (line, lane) of lanes that stopped become NaN.
+pub(in crate::simulate) fn forget_lost(alive: &[bool], values: &mut [f64]) {
+    for lane in (0..alive.len()).filter(|&lane| !alive[lane]) {
+        values.iter_mut().skip(lane).step_by(alive.len()).for_each(|value| *value = f64::NAN);
+    }
 }

@@ -1,7 +1,5 @@
 //! How samples are divided among tiles.
 
-use std::ops::Range;
-
 use super::tuning::TUNING;
 use symdiff::WIDTHS;
 
@@ -22,17 +20,11 @@ pub(in crate::simulate) fn tiles(samples: usize, registers: usize, threads: usiz
     tiles
 }
 
-/// Puts the lines of a tile (line, lane) among those of all samples (line, sample). The first lanes are these samples,
-/// others are left out.
-pub(in crate::simulate) fn put_lanes(
-    values: &[f64],
-    width: usize,
-    lanes: Range<usize>,
-    into: &mut [f64],
-    samples: usize,
-) {
-    for (line, of_tile) in values.chunks_exact(width).enumerate() {
-        into[line * samples..][lanes.clone()].copy_from_slice(&of_tile[..lanes.len()]);
+/// Puts lines of a tile (line, lane) among those of all samples (line, sample), so many. The first lanes are those
+/// `samples`, others are left out.
+pub(super) fn put_lanes(values: &[f64], width: usize, samples: &[usize], into: &mut [f64], all: usize) {
+    for (of_tile, line) in values.chunks_exact(width).zip(into.chunks_exact_mut(all.max(1))) {
+        samples.iter().zip(of_tile).for_each(|(&sample, &value)| line[sample] = value);
     }
 }
 
