@@ -4,8 +4,6 @@
 //! unknown, by Newton's method on the switch's value and rate at the step's end. It ends beyond the event by so little
 //! that what follows begins on the event's other side.
 
-use symdiff::math;
-
 use super::segments::Event;
 use super::tuning::TUNING;
 use crate::compile::SwitchProgram;
@@ -14,8 +12,7 @@ use crate::simulate::control::SwitchWatch;
 use crate::simulate::ensemble::RowClosure;
 use crate::simulate::error::SimulationError;
 use crate::simulate::explicit::movement::Movement;
-use crate::simulate::explicit::runge_kutta::RungeKutta;
-use crate::simulate::explicit::tuning::TUNING as EXPLICIT;
+use crate::simulate::explicit::runge_kutta::{RungeKutta, next_length};
 use crate::simulate::features::{FeatureWork, Features, Passage};
 use crate::simulate::simulator::Simulator;
 
@@ -146,16 +143,10 @@ impl<'s> Path<'s> {
                     None => ratio = f64::INFINITY,
                 }
             }
-            let factor = EXPLICIT.safety * math::pow(ratio.max(1e-12), -0.125);
             let passes_over = ratio <= 1.0 && self.passes_over(begin, end);
             if ratio > 1.0 || passes_over {
                 self.closure.forget();
-                self.h = step
-                    * match ratio {
-                        _ if passes_over => TUNING.passing_share,
-                        _ if ratio.is_finite() => factor.clamp(EXPLICIT.least_factor, EXPLICIT.safety),
-                        _ => EXPLICIT.least_factor,
-                    };
+                self.h = if passes_over { step * TUNING.passing_share } else { next_length(step, ratio) };
                 cut = None;
                 continue;
             }
@@ -163,7 +154,7 @@ impl<'s> Path<'s> {
                 Some((uncut, _)) if event.is_some() => uncut,
                 // A step cut short at the goal is no reason against the longer one.
                 _ if end == goal && step < self.h => self.h,
-                _ => step * factor.clamp(EXPLICIT.least_factor, EXPLICIT.largest_factor),
+                _ => next_length(step, ratio),
             };
             return Ok(PathStep { begin, end, event });
         }

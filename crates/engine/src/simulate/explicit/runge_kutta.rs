@@ -1,9 +1,10 @@
 //! A step of the method for states q, v of whatever kind: each of the 2n lines holds values of lanes, or coefficients
 //! of a jet.
 
-use symdiff::{Vectorise, vectorised};
+use symdiff::{Vectorise, math, vectorised};
 
 use super::tableau::{DENSE, FIFTH, Row, STAGES, THIRD, TIMES, WEIGHTS, WITH_DENSE};
+use super::tuning::TUNING;
 use crate::simulate::drive::Motion;
 
 /// Terms of the dense output: the change, two of the ends' rates, and four of all stages.
@@ -30,6 +31,17 @@ pub(in crate::simulate) struct StepError {
     pub ratio: f64,
     /// h times the largest eigenvalue, as far as the last stages show it.
     pub stiffness: f64,
+}
+
+/// Length of the next step, s, given that of the one that was tried, and its error over the allowance: of the same
+/// step once more where it is more than 1.
+pub(in crate::simulate) fn next_length(step: f64, ratio: f64) -> f64 {
+    let factor = TUNING.safety * math::pow(ratio.max(TUNING.least_ratio), -0.125);
+    step * match ratio {
+        ratio if ratio > 1.0 && ratio.is_infinite() => TUNING.least_factor,
+        ratio if ratio > 1.0 => factor.clamp(TUNING.least_factor, TUNING.safety),
+        _ => factor.clamp(TUNING.least_factor, TUNING.largest_factor),
+    }
 }
 
 impl RungeKutta {

@@ -1,9 +1,8 @@
 //! The steps that a tolerance asks for: all controlling samples in step, the worst decides; and what stands against the
 //! method.
 
-use symdiff::math;
-
 use super::controlling::Tiles;
+use super::runge_kutta::next_length;
 use super::tuning::TUNING;
 use crate::numerics::Sample;
 use crate::simulate::control::tuning::TUNING as CONTROL;
@@ -91,7 +90,6 @@ pub fn explicit_schedule(
         };
         let end = if time + step * (1.0 + 1e-9) >= duration { duration } else { time + step };
         let worst = tiles.attempt(end, tolerance);
-        let factor = TUNING.safety * math::pow(worst.ratio.max(1e-12), -0.125);
         let located = TUNING.located * duration;
         let early = tiles.crossing(step).filter(|&share| share < 1.0 - TUNING.at_the_end && step > located);
         if let Some(share) = early {
@@ -102,12 +100,7 @@ pub fn explicit_schedule(
         }
         if worst.ratio > 1.0 {
             tiles.reject();
-            h = step
-                * if worst.ratio.is_finite() {
-                    factor.clamp(TUNING.least_factor, TUNING.safety)
-                } else {
-                    TUNING.least_factor
-                };
+            h = next_length(step, worst.ratio);
             continue;
         }
         if tiles.pass_over(end) {
@@ -131,7 +124,7 @@ pub fn explicit_schedule(
             continue;
         }
         // A step cut short at the end, or by a function of the time, is no reason against the longer one.
-        h = if step < h { h } else { step * factor.clamp(TUNING.least_factor, TUNING.largest_factor) };
+        h = if step < h { h } else { next_length(step, worst.ratio) };
     }
     Ok(Ok(Schedule::passing(duration, output_step, ends, switches).taken(Integration::Explicit)))
 }

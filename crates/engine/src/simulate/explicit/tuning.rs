@@ -35,6 +35,8 @@ tuning! {
         safety: f64 = 0.9, moves "the steps of explicit runs, also through events";
         /// Least factor from one step to the next.
         least_factor: f64 = 0.2, moves "the steps of explicit runs, also through events";
+        /// Least error over the allowance that counts.
+        least_ratio: f64 = 1e-12, moves "the steps of explicit runs, also through events";
         /// Largest factor from one step to the next.
         largest_factor: f64 = 6.0, moves "the steps of explicit runs, also through events";
     }

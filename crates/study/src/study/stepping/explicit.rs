@@ -82,6 +82,39 @@ pub fn explicit_steps(
     explicit_schedule(&study.simulator, samples, duration, output_step, tolerance, most, study.interruption)
 }
 
+/// An error over the allowance, and a result that it comes with.
+type Judged<T> = Result<Result<(f64, T), Obstacle>, SimulationError>;
+
+/// A schedule whose error over the allowance, as `judge` finds it by its round, is at most `within`; the steps' own
+/// tolerance, which begins as a share of `allowed`, is made smaller until it is.
+fn explicit_rounds<T>(
+    study: &Study,
+    samples: &[Sample],
+    base: &Schedule,
+    [allowed, within]: [f64; 2],
+    mut judge: impl FnMut(usize, &Schedule) -> Judged<T>,
+) -> Result<Result<(Schedule, T), Obstacle>, SimulationError> {
+    let mut tolerance = TUNING.explicit_share * allowed;
+    for round in 0..TUNING.explicit_rounds {
+        let schedule = match explicit_steps(study, samples, base, tolerance)? {
+            Ok(schedule) => schedule,
+            Err(obstacle) => return Ok(Err(obstacle.into())),
+        };
+        let (share, found) = match judge(round, &schedule)? {
+            Ok(judged) => judged,
+            Err(obstacle) => return Ok(Err(obstacle)),
+        };
+        if share <= within {
+            return Ok(Ok((schedule, found)));
+        }
+        if share.is_nan() || study.interruption.is_asked() {
+            break;
+        }
+        tolerance *= (TUNING.explicit_aim / share).max(TUNING.explicit_sharpest);
+    }
+    Ok(Err(Obstacle::Inaccurate))
+}
+
 /// A schedule whose errors at the validation samples are within the steps' share of a tolerance of the bounds.
 pub fn balance_explicit(
     study: &Study,
@@ -91,34 +124,21 @@ pub fn balance_explicit(
     progress: &Progress,
 ) -> Result<Tried, SimulationError> {
     let samples = explicit_samples(study);
-    let mut tolerance = TUNING.explicit_share * allowed;
-    for round in 0..TUNING.explicit_rounds {
-        let begun = Instant::now();
-        let schedule = match explicit_steps(study, &samples, base, tolerance)? {
-            Ok(schedule) => schedule,
-            Err(obstacle) => return Ok(Err(obstacle.into())),
-        };
-        let asked = study.description.simulation.scheme == SchemeChoice::Explicit;
-        if round == 0 && !asked && plain_work(&study.simulator, base) < explicit_work(&study.simulator, &schedule) {
+    let asked = study.description.simulation.scheme == SchemeChoice::Explicit;
+    let mut begun = Instant::now();
+    explicit_rounds(study, &samples, base, [allowed, TUNING.share], |round, schedule| {
+        if round == 0 && !asked && plain_work(&study.simulator, base) < explicit_work(&study.simulator, schedule) {
             let validation = validation(study, &StepPlan::fixed(base.clone()), observed, progress)?;
             if validation.worst_share(allowed, base.rows) <= TUNING.share {
                 return Ok(Err(Obstacle::Costlier));
             }
         }
-        let plan = StepPlan::fixed(schedule);
-        let validation = validation(study, &plan, observed, progress)?;
-        let share = validation.worst_share(allowed, plan.schedule.rows);
-        if share <= TUNING.share {
-            let stop = validation.simulated.stop.as_ref().map(|(stop, _)| stop);
-            let summary = validation_summary(&plan.schedule, &validation, stop, begun);
-            return Ok(Ok((plan.schedule, (validation, summary))));
-        }
-        if share.is_nan() || study.interruption.is_asked() {
-            break;
-        }
-        tolerance *= (TUNING.explicit_aim / share).max(TUNING.explicit_sharpest);
-    }
-    Ok(Err(Obstacle::Inaccurate))
+        let validation = validation(study, &StepPlan::fixed(schedule.clone()), observed, progress)?;
+        let stop = validation.simulated.stop.as_ref().map(|(stop, _)| stop);
+        let summary = validation_summary(schedule, &validation, stop, begun);
+        begun = Instant::now();
+        Ok(Ok((validation.worst_share(allowed, schedule.rows), (validation, summary))))
+    })
 }
 
 /// A schedule whose errors at some samples are within a tolerance of the steps.
@@ -130,22 +150,11 @@ pub fn explicit_within(
     let simulation = &study.description.simulation;
     let step = TUNING.typical_step.min(simulation.output_step);
     let base = Schedule::fixed(simulation.duration, step, simulation.output_step);
-    let mut of_steps = TUNING.explicit_share * tolerance;
-    for _ in 0..TUNING.explicit_rounds {
-        let schedule = match explicit_steps(study, samples, &base, of_steps)? {
-            Ok(schedule) => schedule,
-            Err(obstacle) => return Ok(Err(obstacle.into())),
-        };
-        let share = steps_error(study, &StepPlan::fixed(schedule.clone()), samples)? / tolerance;
-        if share <= 1.0 {
-            return Ok(Ok(schedule));
-        }
-        if share.is_nan() || study.interruption.is_asked() {
-            break;
-        }
-        of_steps *= (TUNING.explicit_aim / share).max(TUNING.explicit_sharpest);
-    }
-    Ok(Err(Obstacle::Inaccurate))
+    let judge = |_, schedule: &Schedule| {
+        let plan = StepPlan::fixed(schedule.clone());
+        Ok(Ok((steps_error(study, &plan, samples)? / tolerance, ())))
+    };
+    Ok(explicit_rounds(study, samples, &base, [tolerance, 1.0], judge)?.map(|(schedule, ())| schedule))
 }
 
 /// Instructions of a sample by the scheme's own steps.
