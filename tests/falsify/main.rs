@@ -7,7 +7,7 @@
 //! ```
 //!
 //! `MBINT_FALSIFY_FAMILY=pulse` draws from families whose names begin so, `MBINT_FALSIFY_ONLY=17` the draw of that
-//! number, `MBINT_FALSIFY_FIRST=300` begins with that number; `MBINT_FALSIFY_SECONDS=600` begins no draw after ten
+//! number, whose model it prints, `MBINT_FALSIFY_FIRST=300` begins with that number; `MBINT_FALSIFY_SECONDS=600` begins no draw after ten
 //! minutes, `MBINT_FALSIFY_THREADS=1` makes them one after the other, `MBINT_FALSIFY_PATIENCE=300` waits five
 //! minutes for one (60 s), as a busy machine needs.
 //! `MBINT_FALSIFY_RECORD=FILE` notes every draw in a file; those that it has are not repeated, and count in the table.
@@ -123,6 +123,9 @@ fn attack(draw: &Draw, number: u64, findings: &Mutex<Findings>, shown: usize) {
     let lock = || findings.lock().expect("no draw panics with the findings");
     if lock().record.as_ref().is_some_and(|record| record.has(number)) {
         return;
+    }
+    if asked::<u64>("MBINT_FALSIFY_ONLY").is_some() {
+        println!("{}", draw.yaml());
     }
     let outcome = examine(draw);
     let scored = Scored::new(draw.family, &outcome);
