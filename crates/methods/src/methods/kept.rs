@@ -5,6 +5,9 @@
 //! through its own samples, or follows from the expanded coordinates through a loop closure, which whoever evaluates it
 //! has compiled.
 
+use std::fmt::Debug;
+use std::sync::Arc;
+
 use super::closure::Closure;
 use super::expansion::{Expansion, Moves};
 use crate::numerics::{ParameterBox, SparseBasis, SparseWork};
@@ -13,8 +16,29 @@ use crate::numerics::{ParameterBox, SparseBasis, SparseWork};
 #[derive(Clone, Debug, Default)]
 pub struct KeptSurrogate {
     boxes: Vec<KeptBox>,
+    /// In place of boxes, of motions that are cut at events.
+    pieces: Option<Arc<dyn CutSurrogate>>,
     /// By output and row; empty if nothing is known of them.
     errors: Vec<Vec<f64>>,
+}
+
+/// A surrogate of motions that are cut at events.
+pub(super) trait CutSurrogate: Debug + Send + Sync {
+    /// Rows that are known.
+    fn rows(&self) -> &[CutRow];
+
+    /// Some outputs in one row at samples of the box (values of the parameters in their units), output by output; NaN
+    /// where the closure has no solution.
+    fn values(&self, row: usize, outputs: &[usize], samples: &[&[f64]], closure: &dyn Closure) -> Vec<f64>;
+}
+
+/// A row of motions that are cut at events.
+#[derive(Clone, Debug)]
+pub(super) struct CutRow {
+    /// s
+    pub time: f64,
+    /// The independent coordinates from which outputs follow.
+    pub independent: Vec<usize>,
 }
 
 /// A sub-box with its polynomials.
@@ -77,7 +101,12 @@ impl KeptSurrogate {
     /// Over one box.
     pub fn of_box(domain: &ParameterBox, basis: &SparseBasis, rows: Vec<KeptRow>) -> Self {
         let boxes = vec![KeptBox { domain: domain.clone(), basis: basis.clone(), rows }];
-        Self { boxes, errors: Vec::new() }
+        Self { boxes, ..Self::default() }
+    }
+
+    /// Of motions that are cut at events.
+    pub(super) fn of_pieces(pieces: Arc<dyn CutSurrogate>) -> Self {
+        Self { pieces: Some(pieces), ..Self::default() }
     }
 
     /// With errors of its values, by output and row, that the method knows beside those at the validation samples.
@@ -104,7 +133,12 @@ impl KeptSurrogate {
         self.boxes.push(KeptBox { domain: domain.clone(), basis: basis.clone(), rows });
     }
 
-    /// Some of the expanded coordinates and of the outputs alone, numbered in this order; `lines` ascend.
+    /// Whether it is of motions that are cut at events.
+    pub fn is_cut(&self) -> bool {
+        self.pieces.is_some()
+    }
+
+    /// Some of the expanded coordinates and of the outputs alone, numbered in this order; `lines` ascend. Of boxes.
     pub fn only(&self, lines: &[usize], outputs: &[usize]) -> Self {
         let of_box = |part: &KeptBox| KeptBox {
             domain: part.domain.clone(),
@@ -115,20 +149,23 @@ impl KeptSurrogate {
             true => Vec::new(),
             false => outputs.iter().map(|&output| self.errors[output].clone()).collect(),
         };
-        Self { boxes: self.boxes.iter().map(of_box).collect(), errors }
+        Self { boxes: self.boxes.iter().map(of_box).collect(), pieces: None, errors }
     }
 
     /// Rows that are known over the whole box.
     pub fn rows(&self) -> usize {
-        self.boxes.iter().map(|part| part.rows.len()).min().unwrap_or(0)
+        let of_pieces = self.pieces.iter().map(|pieces| pieces.rows().len());
+        self.boxes.iter().map(|part| part.rows.len()).chain(of_pieces).min().unwrap_or(0)
     }
 
     /// The choices of independent coordinates through which outputs follow, each once.
     pub fn independent(&self) -> Vec<Vec<usize>> {
         let mut found: Vec<Vec<usize>> = Vec::new();
-        for row in self.boxes.iter().flat_map(|part| &part.rows) {
-            if row.own.contains(&false) && !found.contains(&row.independent) {
-                found.push(row.independent.clone());
+        let of_boxes = self.boxes.iter().flat_map(|part| &part.rows).filter(|row| row.own.contains(&false));
+        let of_pieces = self.pieces.iter().flat_map(|pieces| pieces.rows()).map(|row| &row.independent);
+        for independent in of_boxes.map(|row| &row.independent).chain(of_pieces) {
+            if !found.contains(independent) {
+                found.push(independent.clone());
             }
         }
         found
@@ -169,6 +206,13 @@ impl KeptSurrogate {
         samples: &[P],
         closures: &'c [Box<dyn Closure + 'c>],
     ) -> Vec<f64> {
+        if let Some(pieces) = &self.pieces {
+            let Some(closure) = closures.iter().find(|own| own.independent() == pieces.rows()[row].independent) else {
+                return vec![f64::NAN; outputs.len() * samples.len()];
+            };
+            let samples: Vec<&[f64]> = samples.iter().map(AsRef::as_ref).collect();
+            return pieces.values(row, outputs, &samples, closure.as_ref());
+        }
         let mut values = vec![f64::NAN; outputs.len() * samples.len()];
         let mut left: Vec<usize> = (0..samples.len()).collect();
         for part in &self.boxes {

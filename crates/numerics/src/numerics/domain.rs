@@ -94,7 +94,7 @@ impl ParameterBox {
     }
 
     /// ξ of a sample; 0 along parameters without width.
-    pub fn xi(&self, sample: &Sample) -> Vec<f64> {
+    pub fn xi(&self, sample: &[f64]) -> Vec<f64> {
         let along = |axis: usize| match self.half_width(axis) {
             half if half > 0.0 => (sample[axis] - self.midpoint(axis)) / half,
             _ => 0.0,

@@ -78,7 +78,7 @@ impl<'e> Combined<'e> {
 
     /// ξ of the box at a point of the lines.
     pub fn xi(&self, along: &[f64]) -> Vec<f64> {
-        self.of_box().xi(&self.embed(along).into())
+        self.of_box().xi(&self.embed(along))
     }
 
     /// What holds along each line for each parameter of the box.

@@ -282,7 +282,7 @@ impl BoundingMethod for Chebyshev {
         // An output is no polynomial behind an event, whatever is to be expanded.
         if composes
             && is_full
-            && let Some(result) = segments::of_degree(ensemble, &surrogate, &samples, validation)?
+            && let Some(result) = segments::of_degree(ensemble, &surrogate, &samples, validation, request.keep)?
         {
             return Ok(result);
         }
@@ -320,7 +320,7 @@ fn adapted(
         OutputGoal { allowed: (allowed - time).max(TUNING.least_share * allowed), rows }
     };
     let mut goal = Goal { outputs: (0..ensemble.outputs()).map(of_output).collect(), budget: request.budget, spent };
-    if let Some(found) = segments::adapted(ensemble, &goal, validation)? {
+    if let Some(found) = segments::adapted(ensemble, &goal, validation, request.keep)? {
         return Ok(found);
     }
     let outputs = ensemble.outputs();

@@ -118,6 +118,11 @@ impl Kept {
             && reduced.all(KeptReduced::is_resolved)
     }
 
+    /// Whether some values are of motions that are cut at events.
+    pub fn is_cut(&self) -> bool {
+        self.parts.iter().any(|placed| placed.part.surrogate.is_cut())
+    }
+
     /// Numbers of the uncertain parameters on which an output may depend.
     pub fn parameters(&self, output: usize) -> &[usize] {
         &self.parts[self.indices[output].0].parameters

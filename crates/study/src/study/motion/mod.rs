@@ -167,7 +167,7 @@ impl<'a> Posed<'a> {
             let degrees = (0..terms).flat_map(|term| surrogate.basis().degrees(term)).copied().collect();
             let (bodies, points) = (fit(|poses| &poses.bodies), fit(|poses| &poses.points));
             let points_of_box: Vec<Vec<f64>> =
-                samples.iter().map(|sample| self.rows.domain.xi(&sample.values.clone().into())).collect();
+                samples.iter().map(|sample| self.rows.domain.xi(&sample.values)).collect();
             let mut found = vec![0.0; nominal.bodies.len() * samples.len()];
             surrogate.basis().values(&points_of_box, &bodies, &mut found, &mut SparseWork::default());
             let lines = found.chunks_exact(samples.len().max(1)).enumerate();

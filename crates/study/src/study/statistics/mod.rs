@@ -43,9 +43,9 @@ pub(super) fn run(description: &Description, shown: usize, options: &Options) ->
     let found = match &kept {
         _ if (options.interrupted)() => Err(INTERRUPTED.to_owned()),
         _ if realisations::is_random(description) => motions::of_motions(description, shown, options),
-        Some(kept) => of_run(description, shown, options, &bounds, kept),
-        None if options.skip_infeasible => Err("there is no surrogate over the whole box".to_owned()),
-        None => beside_bounds::of_motions(description, shown, options, &bounds),
+        Some(kept) if has_numbers(description, kept) => of_run(description, shown, options, &bounds, kept),
+        _ if options.skip_infeasible => Err("there is no surrogate over the whole box".to_owned()),
+        _ => beside_bounds::of_motions(description, shown, options, &bounds),
     };
     let found = found.unwrap_or_else(|failure| StatisticsResult {
         times: Vec::new(),
@@ -60,6 +60,14 @@ pub(super) fn run(description: &Description, shown: usize, options: &Options) ->
         bounds.derivatives.clear();
     }
     Ok((bounds, summary))
+}
+
+/// Whether a run kept surrogates of all reduced outputs and margins, or motions that are simulated would not have them
+/// either.
+fn has_numbers(description: &Description, kept: &Kept) -> bool {
+    let reduced = description.reduced.is_empty() || kept.reduced(description.reduced.len()).is_some();
+    let margins = description.requirements.is_empty() || kept.margins().is_some();
+    !kept.is_cut() || (reduced && margins)
 }
 
 /// Statistics of what a run kept; where a law reaches beyond the box, of a surrogate over a wider one.

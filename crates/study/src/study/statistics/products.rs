@@ -33,8 +33,8 @@ pub(super) struct Products {
 }
 
 impl Products {
-    /// Of the first so many outputs; `None` where the parameters are few, a surrogate is within the tolerance, or
-    /// samples cannot be simulated.
+    /// Of the first so many outputs; `None` where the parameters are few and motions are not cut at events, a surrogate
+    /// is within the tolerance, or samples cannot be simulated.
     ///
     /// # Errors
     /// Where the model cannot be simulated.
@@ -45,7 +45,8 @@ impl Products {
         kept: &Kept,
         outputs: usize,
     ) -> Result<Option<Self>, RunError> {
-        if laws.dimension() < ATTAINED.fewest_parameters || kept.is_resolved(outputs) {
+        let are_few = laws.dimension() < ATTAINED.fewest_parameters && !kept.is_cut();
+        if are_few || kept.is_resolved(outputs) {
             return Ok(None);
         }
         (options.stage)("samples of the laws");

@@ -7,9 +7,9 @@ use crate::numerics::{LeastSquares, SparseBasis, largest, truncation};
 
 /// Terms in ξ.
 #[derive(Clone, Debug)]
-pub(super) enum Basis<'a> {
+pub(super) enum Basis {
     /// Those of a grid's surrogate.
-    Grid(&'a SparseBasis),
+    Grid(SparseBasis),
     /// Those of a part of the box, which are fitted to samples in it.
     Fitted(Fitted),
     /// Powers of distances from a centre, those of a jet.
@@ -144,7 +144,7 @@ impl Fitted {
     }
 }
 
-impl Basis<'_> {
+impl Basis {
     pub fn len(&self) -> usize {
         match self {
             Self::Grid(basis) => basis.len(),

@@ -57,10 +57,10 @@ pub(super) fn extents(row: &SegmentRow, lattice: &Lattice) -> Vec<Extent> {
                 let range = Range { lower: least.value, upper: most.value };
                 Extent::at(range, 0.0, [least, most].map(|climb| climb.point.xi.clone()))
             }
-            _ => Extent::unknown(row.ensemble.domain().dimension()),
+            _ => Extent::unknown(row.domain.dimension()),
         }
     };
-    (0..row.ensemble.outputs()).map(of_output).collect()
+    (0..row.outputs).map(of_output).collect()
 }
 
 /// Climbs from the best of all places that are looked at.
@@ -133,7 +133,7 @@ fn step(row: &SegmentRow, climbs: &mut [Climb]) -> bool {
     if going.is_empty() {
         return false;
     }
-    let k = row.ensemble.domain().dimension();
+    let k = row.domain.dimension();
     let beside = |climb: &&mut Climb| {
         let xi = climb.point.xi.clone();
         (0..k).map(move |axis| {

@@ -23,14 +23,14 @@ pub(super) struct Fitting<'v> {
 }
 
 /// Pieces, the number of samples, and the time from which motions of no word are met, s.
-type Found<'b> = (Vec<Piece<'b>>, usize, f64);
+type Found = (Vec<Piece>, usize, f64);
 
 impl Fitting<'_> {
     /// The polynomials; `None` where samples that are added cannot be cut.
     ///
     /// # Errors
     /// Where a sample cannot be assembled.
-    pub fn pieces<'b>(mut self, ensemble: &dyn Ensemble) -> Result<Option<Found<'b>>, EnsembleError> {
+    pub fn pieces(mut self, ensemble: &dyn Ensemble) -> Result<Option<Found>, EnsembleError> {
         let words = self.samples.motions.words.len();
         let mut parts: Vec<WordPart> = (0..words).map(|word| WordPart::of_word(word, &self.samples.motions)).collect();
         let (mut layer, mut covered) = (0, 0);
@@ -80,7 +80,7 @@ impl Fitting<'_> {
     }
 
     /// The polynomials of a part, and by what share of their range they miss samples that are left out.
-    fn fitted<'b>(&self, part: &WordPart, levels: &[Option<Level>]) -> Option<(f64, Piece<'b>)> {
+    fn fitted(&self, part: &WordPart, levels: &[Option<Level>]) -> Option<(f64, Piece)> {
         let places = self.samples.places(part, levels);
         let motions = self.samples.motions.words[part.word].picked(&places);
         let xi: Vec<Vec<f64>> = motions.samples.iter().map(|&sample| self.samples.xi[sample].clone()).collect();

@@ -8,6 +8,7 @@
 //! - `piece`: a part of the box with its polynomials, `pieces`: all of them, `parts`: the samples in each;
 //! - `fitting`: polynomials by least squares, and `sampling`: the samples that these need;
 //! - `growth`: the terms of polynomials of many parameters;
+//! - `kept`: all of them, kept after the run;
 //! - `of_part`: a number that motions have in a part of the box only;
 //! - `row`: the outputs at a time, and how far the polynomials' errors move them;
 //! - `seeds`: where a range is searched for, and `climb`: the search within the part of the box that is in a segment,
@@ -17,6 +18,7 @@ mod basis;
 mod climb;
 mod fitting;
 mod growth;
+mod kept;
 mod of_part;
 mod parts;
 mod piece;
@@ -27,6 +29,8 @@ mod seeds;
 mod surrogate;
 pub(crate) mod tuning;
 
+use std::sync::Arc;
+
 use rayon::prelude::*;
 use symdiff::jet::JetSpace;
 
@@ -35,10 +39,13 @@ use super::composition::can_compose;
 use super::sensitivity::SensitivityAnalysis;
 use crate::methods::closure::Closure;
 use crate::methods::ensemble::{Ensemble, EnsembleError, Simulated};
+use crate::methods::kept::{CutRow, KeptSurrogate};
+use crate::methods::request::Keep;
 use crate::methods::result::{BandBuilder, Estimate, MethodResult};
 use crate::methods::validation::Validation;
 use crate::numerics::{Extent, Range, SAFETY_OF_SURROGATE, Sample, Surrogate, largest, union};
 use growth::Growth;
+use kept::KeptPieces;
 pub use of_part::{number_as_motion, range_in_part};
 use piece::Piece;
 use pieces::Pieces;
@@ -55,12 +62,13 @@ pub(super) fn of_degree(
     surrogate: &Surrogate,
     samples: &[Sample],
     validation: &Validation,
+    keep: Keep,
 ) -> Result<Option<MethodResult>, EnsembleError> {
     let Some(motions) = ensemble.segments(samples)? else { return Ok(None) };
     match Pieces::new(ensemble, surrogate, motions, validation)? {
         Some(pieces) => {
-            let bands = composed(ensemble, &pieces, Some(surrogate), validation)?;
-            Ok(Some(finished(bands, samples.len(), &pieces)))
+            let composed = composed(ensemble, &pieces, Some(surrogate), validation)?;
+            Ok(Some(composed.finished(ensemble, samples.len(), pieces, keep)))
         }
         None => Ok(None),
     }
@@ -74,6 +82,7 @@ pub(super) fn adapted(
     ensemble: &dyn Ensemble,
     goal: &Goal,
     validation: &Validation,
+    keep: Keep,
 ) -> Result<Option<MethodResult>, EnsembleError> {
     let k = ensemble.domain().dimension();
     let (mut spent, mut best) = (0, None);
@@ -81,7 +90,7 @@ pub(super) fn adapted(
         return Ok(None);
     }
     if k >= TUNING.many_parameters {
-        return grown(ensemble, goal, validation);
+        return grown(ensemble, goal, validation, keep);
     }
     for order in TUNING.degrees {
         let count = (order + 1).checked_pow(k as u32);
@@ -90,7 +99,7 @@ pub(super) fn adapted(
         }
         let surrogate = Surrogate::tensor(&vec![order; k], &vec![order + 1; k]);
         let samples = ensemble.domain().samples(surrogate.samples());
-        let Some(result) = of_degree(ensemble, &surrogate, &samples, validation)? else { break };
+        let Some(result) = of_degree(ensemble, &surrogate, &samples, validation, keep)? else { break };
         spent += result.simulations;
         let is_enough = excess(&result, goal) <= 1.0;
         best = Some(MethodResult { order: Some(vec![order; k]), simulations: spent, ..result });
@@ -102,7 +111,12 @@ pub(super) fn adapted(
 }
 
 /// As `adapted`, for many parameters: terms are added until the goal is met.
-fn grown(ensemble: &dyn Ensemble, goal: &Goal, validation: &Validation) -> Result<Option<MethodResult>, EnsembleError> {
+fn grown(
+    ensemble: &dyn Ensemble,
+    goal: &Goal,
+    validation: &Validation,
+    keep: Keep,
+) -> Result<Option<MethodResult>, EnsembleError> {
     let Some(mut growth) = Growth::start(ensemble)? else { return Ok(None) };
     let mut best: Option<MethodResult> = None;
     // The excess when rows were last bounded, and the error of the polynomials then.
@@ -116,7 +130,8 @@ fn grown(ensemble: &dyn Ensemble, goal: &Goal, validation: &Validation) -> Resul
         let is_last = goal.spent + wanted > goal.budget.simulations || ensemble.is_interrupted();
         let is_likely = |(excess, before): (f64, f64)| excess * error <= TUNING.likely * before;
         if is_last || last.is_none_or(is_likely) {
-            let result = finished(composed(ensemble, &pieces, Some(&surrogate), validation)?, count, &pieces);
+            let composed = composed(ensemble, &pieces, Some(&surrogate), validation)?;
+            let result = composed.finished(ensemble, count, pieces, keep);
             let excess = excess(&result, goal);
             best = Some(MethodResult { order: Some(growth.orders()), ..result });
             if is_last || excess <= 1.0 || excess.is_nan() {
@@ -149,14 +164,31 @@ pub(in crate::methods) fn of_jets(
     validation: &Validation,
 ) -> Result<Option<MethodResult>, EnsembleError> {
     match Pieces::of_jets(ensemble, space, validation)? {
-        Some(pieces) => composed(ensemble, &pieces, None, validation).map(|bands| Some(finished(bands, 1, &pieces))),
+        Some(pieces) => {
+            let composed = composed(ensemble, &pieces, None, validation)?;
+            Ok(Some(composed.finished(ensemble, 1, pieces, Keep::Nothing)))
+        }
         None => Ok(None),
     }
 }
 
-fn finished(bands: (BandBuilder, Simulated), simulations: usize, pieces: &Pieces) -> MethodResult {
-    let (bands, simulated) = bands;
-    bands.finish(simulations + pieces.added, simulated)
+/// Bounds from polynomials.
+struct Composed {
+    bands: BandBuilder,
+    simulated: Simulated,
+    /// Rows that are known.
+    rows: Vec<CutRow>,
+}
+
+impl Composed {
+    /// The result of so many simulations; the polynomials are kept for statistics.
+    fn finished(self, ensemble: &dyn Ensemble, simulations: usize, pieces: Pieces, keep: Keep) -> MethodResult {
+        let simulations = simulations + pieces.added;
+        let keeps = keep == Keep::Statistics;
+        let kept = keeps.then(|| KeptPieces::new(ensemble.domain(), pieces, ensemble.outputs(), self.rows));
+        let kept = kept.map(|kept| KeptSurrogate::of_pieces(Arc::new(kept)));
+        self.bands.finish_keeping(simulations, self.simulated, kept)
+    }
 }
 
 /// Bounds from the polynomials in all parts of the box; sensitivities where there is a grid.
@@ -168,7 +200,7 @@ fn composed(
     pieces: &Pieces,
     grid: Option<&Surrogate>,
     validation: &Validation,
-) -> Result<(BandBuilder, Simulated), EnsembleError> {
+) -> Result<Composed, EnsembleError> {
     let domain = ensemble.domain();
     let lattice = |piece: &Piece| Lattice::new(&piece.surrogate, &piece.samples, domain.dimension());
     let lattices: Vec<Lattice> = pieces.all.iter().map(lattice).collect();
@@ -192,7 +224,7 @@ fn composed(
             return (0..ensemble.outputs()).map(|output| unknown(ensemble.seen(row, output))).collect();
         }
         let (time, closure) = (ensemble.time(row), closures[chosen[row]].as_ref());
-        let row_of = BoxRow { ensemble, pieces, closure, time };
+        let row_of = BoxRow { domain, outputs: ensemble.outputs(), pieces, closure, time };
         let of_part = |(piece, lattice)| {
             let row_of = row_of.in_part(piece);
             let extents = climb::extents(&row_of, lattice);
@@ -229,7 +261,12 @@ fn composed(
         estimates.into_iter().enumerate().for_each(|(output, estimate)| bands.set_estimate(row, output, estimate));
     }
     let beyond_tolerance_from = (known_rows < ensemble.rows()).then_some(known_rows);
-    Ok((bands, Simulated { beyond_tolerance_from, ..Simulated::default() }))
+    let of_row = |row: usize| {
+        let independent = closures[chosen[row]].independent().to_vec();
+        CutRow { time: ensemble.time(row), independent }
+    };
+    let rows = (0..known_rows).map(of_row).collect();
+    Ok(Composed { bands, simulated: Simulated { beyond_tolerance_from, ..Simulated::default() }, rows })
 }
 
 /// A row of which only simulated values are known.

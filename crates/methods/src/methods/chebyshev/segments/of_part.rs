@@ -85,7 +85,7 @@ pub fn range_in_part(
     }
     let of_piece = |piece: &Piece| {
         let lattice = Lattice::new(&piece.surrogate, &piece.samples, k);
-        let row = SegmentRow { ensemble, piece, closure: &Number, time: middle };
+        let row = SegmentRow { domain, outputs: 1, piece, closure: &Number, time: middle };
         let extents = climb::extents(&row, &lattice);
         let moved = row.moved(&extents);
         (extents, moved)

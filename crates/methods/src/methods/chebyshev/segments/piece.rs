@@ -5,8 +5,9 @@ use super::tuning::TUNING;
 use crate::numerics::SegmentMotions;
 
 /// A part of the box.
-pub(super) struct Piece<'a> {
-    pub surrogate: SegmentSurrogate<'a>,
+#[derive(Clone, Debug)]
+pub(super) struct Piece {
+    pub surrogate: SegmentSurrogate,
     pub errors: SegmentErrors,
     /// Errors at samples that are deeper behind all surfaces: by the shares of the depth from which on they hold, as
     /// far as samples are enough.
@@ -31,15 +32,15 @@ pub(super) struct ValidationMotions<'m> {
     pub motions: &'m SegmentMotions,
 }
 
-impl<'a> Piece<'a> {
+impl Piece {
     /// With the same errors everywhere.
-    pub fn new(surrogate: SegmentSurrogate<'a>, errors: SegmentErrors, samples: Vec<Vec<f64>>) -> Self {
+    pub fn new(surrogate: SegmentSurrogate, errors: SegmentErrors, samples: Vec<Vec<f64>>) -> Self {
         Self { surrogate, errors, samples, deeper: Vec::new(), depths: Vec::new() }
     }
 
     /// Of polynomials that were fitted to samples, with the errors of those.
     pub fn fitted(
-        surrogate: SegmentSurrogate<'a>,
+        surrogate: SegmentSurrogate,
         samples: Vec<Vec<f64>>,
         fitted: FittedMotions<'_>,
         held_out: ValidationMotions<'_>,

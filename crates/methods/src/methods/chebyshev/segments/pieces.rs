@@ -17,22 +17,23 @@ use crate::methods::validation::Validation;
 use crate::numerics::{CutMotions, SegmentMotions, Surrogate, SurrogateWork, corners, spread};
 
 /// All parts.
-pub(super) struct Pieces<'a> {
-    pub all: Vec<Piece<'a>>,
+#[derive(Clone, Debug)]
+pub(super) struct Pieces {
+    pub all: Vec<Piece>,
     /// Time from which motions of no word are met, s.
     pub known_to: f64,
     /// Samples beside the grid's.
     pub added: usize,
 }
 
-impl<'a> Pieces<'a> {
+impl Pieces {
     /// From the motions of the grid's samples; `None` where validation samples cannot be cut.
     ///
     /// # Errors
     /// Where a sample cannot be assembled.
     pub fn new(
         ensemble: &dyn Ensemble,
-        grid: &'a Surrogate,
+        grid: &Surrogate,
         motions: CutMotions,
         validation: &Validation,
     ) -> Result<Option<Self>, EnsembleError> {
@@ -45,7 +46,8 @@ impl<'a> Pieces<'a> {
             let mut work = SurrogateWork::default();
             let of_word = |(motions, direct): (&SegmentMotions, &SegmentMotions)| {
                 let coefficients = |values: &[f64]| grid.coefficients(values, &mut work);
-                let surrogate = SegmentSurrogate::new(Basis::Grid(grid.basis()), Vec::new(), motions, coefficients);
+                let surrogate =
+                    SegmentSurrogate::new(Basis::Grid(grid.basis().clone()), Vec::new(), motions, coefficients);
                 let errors = SegmentErrors::new(&surrogate, &validation.points, direct);
                 Piece::new(surrogate, errors, Vec::new())
             };
@@ -107,7 +109,7 @@ impl<'a> Pieces<'a> {
     }
 
     /// The part that some ξ is in: where errors of surfaces leave it in none, that which it is least far from.
-    pub fn part_of(&self, xi: &[f64]) -> Option<&Piece<'a>> {
+    pub fn part_of(&self, xi: &[f64]) -> Option<&Piece> {
         let beyond = |piece: &&Piece| piece.surrogate.ends.iter().map(|end| -end.margin(xi)).fold(0.0, f64::max);
         self.all.iter().min_by(|a, b| beyond(a).total_cmp(&beyond(b)))
     }

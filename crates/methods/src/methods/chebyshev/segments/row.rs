@@ -6,13 +6,14 @@ use super::surrogate::Point;
 use super::tuning::TUNING;
 use crate::methods::chebyshev::sensitivity::Predicted;
 use crate::methods::closure::Closure;
-use crate::methods::ensemble::Ensemble;
-use crate::numerics::{Extent, Surrogate, largest};
+use crate::numerics::{Extent, ParameterBox, Surrogate, largest};
 
 /// A row of output in one part of the box.
 pub(super) struct SegmentRow<'r> {
-    pub ensemble: &'r dyn Ensemble,
-    pub piece: &'r Piece<'r>,
+    pub domain: &'r ParameterBox,
+    /// Number of outputs.
+    pub outputs: usize,
+    pub piece: &'r Piece,
     pub closure: &'r dyn Closure,
     /// s
     pub time: f64,
@@ -20,8 +21,10 @@ pub(super) struct SegmentRow<'r> {
 
 /// A row of output in all of it.
 pub(super) struct BoxRow<'r> {
-    pub ensemble: &'r dyn Ensemble,
-    pub pieces: &'r Pieces<'r>,
+    pub domain: &'r ParameterBox,
+    /// Number of outputs.
+    pub outputs: usize,
+    pub pieces: &'r Pieces,
     pub closure: &'r dyn Closure,
     /// s
     pub time: f64,
@@ -54,7 +57,7 @@ impl SegmentRow<'_> {
     }
 
     fn closed<'x>(&self, xi: impl Iterator<Item = &'x [f64]>, count: usize, motion: Vec<f64>) -> Vec<f64> {
-        let domain = self.ensemble.domain();
+        let domain = self.domain;
         let mut parameters = vec![0.0; domain.dimension() * count];
         for (index, xi) in xi.enumerate() {
             for (parameter, &xi) in xi.iter().enumerate() {
@@ -143,28 +146,20 @@ impl SegmentRow<'_> {
 
 impl<'r> BoxRow<'r> {
     /// The row in one part.
-    pub fn in_part(&self, piece: &'r Piece<'r>) -> SegmentRow<'r> {
-        SegmentRow { ensemble: self.ensemble, piece, closure: self.closure, time: self.time }
-    }
-}
-
-impl Predicted for SensedRow<'_> {
-    fn outputs(&self) -> usize {
-        self.row.ensemble.outputs()
+    pub fn in_part(&self, piece: &'r Piece) -> SegmentRow<'r> {
+        let Self { domain, outputs, closure, time, .. } = *self;
+        SegmentRow { domain, outputs, piece, closure, time }
     }
 
-    fn surrogate(&self) -> &Surrogate {
-        self.grid
-    }
-
-    fn predict_some(&self, outputs: &[usize], points: &[Vec<f64>]) -> Vec<f64> {
+    /// Some of the outputs at points of the box: output, point.
+    pub fn some_outputs(&self, outputs: &[usize], points: &[Vec<f64>]) -> Vec<f64> {
         let mut values = vec![f64::NAN; outputs.len() * points.len()];
-        for piece in &self.row.pieces.all {
+        for piece in &self.pieces.all {
             let is_own =
-                |point: &usize| self.row.pieces.part_of(&points[*point]).is_some_and(|own| std::ptr::eq(own, piece));
+                |point: &usize| self.pieces.part_of(&points[*point]).is_some_and(|own| std::ptr::eq(own, piece));
             let own: Vec<usize> = (0..points.len()).filter(is_own).collect();
             let at = piece.surrogate.points(own.iter().map(|&point| points[point].clone()).collect());
-            let found = self.row.in_part(piece).outputs_at(&at);
+            let found = self.in_part(piece).outputs_at(&at);
             for (line, output) in outputs.iter().enumerate() {
                 for (index, point) in own.iter().enumerate() {
                     values[line * points.len() + point] = found[output * own.len() + index];
@@ -172,5 +167,19 @@ impl Predicted for SensedRow<'_> {
             }
         }
         values
+    }
+}
+
+impl Predicted for SensedRow<'_> {
+    fn outputs(&self) -> usize {
+        self.row.outputs
+    }
+
+    fn surrogate(&self) -> &Surrogate {
+        self.grid
+    }
+
+    fn predict_some(&self, outputs: &[usize], points: &[Vec<f64>]) -> Vec<f64> {
+        self.row.some_outputs(outputs, points)
     }
 }

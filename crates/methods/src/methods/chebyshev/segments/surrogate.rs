@@ -5,8 +5,9 @@ use super::tuning::TUNING;
 use crate::numerics::{LeastSquares, STEP_NODES, SegmentMotions, largest, step_nodes, step_weights};
 
 /// Motions of one word, as functions of the parameters in a part of the box.
-pub(super) struct SegmentSurrogate<'a> {
-    basis: Basis<'a>,
+#[derive(Clone, Debug)]
+pub(super) struct SegmentSurrogate {
+    basis: Basis,
     /// Surfaces that end the part.
     pub ends: Vec<End>,
     /// Ends of the steps of each segment, as shares of its length.
@@ -68,10 +69,10 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-impl<'a> SegmentSurrogate<'a> {
+impl SegmentSurrogate {
     /// From what gives the coefficients of values at the motions' samples, line by line.
     pub fn new(
-        basis: Basis<'a>,
+        basis: Basis,
         ends: Vec<End>,
         motions: &SegmentMotions,
         mut coefficients: impl FnMut(&[f64]) -> Vec<f64>,
@@ -137,12 +138,12 @@ impl<'a> SegmentSurrogate<'a> {
 
     /// The motion (2n) of a point at a time on the branch of a segment, which goes on a little beyond its ends: the
     /// shortest segments are no longer than their errors.
-    pub fn motion(&self, point: &Point, segment: usize, time: f64) -> impl Iterator<Item = f64> {
+    pub fn motion<'p>(&'p self, point: &'p Point, segment: usize, time: f64) -> impl Iterator<Item = f64> + 'p {
         let (step, weights) = self.weights(point, segment, time);
         let nodes = &self.nodes[segment][step * (STEP_NODES - 1)..][..STEP_NODES];
-        let terms = point.terms.clone();
+        let terms = &point.terms;
         (0..self.lines).map(move |line| {
-            let value = |node: &Vec<f64>| dot(&node[line * terms.len()..][..terms.len()], &terms);
+            let value = |node: &Vec<f64>| dot(&node[line * terms.len()..][..terms.len()], terms);
             weights.iter().zip(nodes).map(|(weight, node)| weight * value(node)).sum()
         })
     }
