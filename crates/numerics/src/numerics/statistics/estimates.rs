@@ -2,6 +2,7 @@
 
 use super::beta::beta_quantile;
 use super::points::REPLICATES;
+use super::tuning::TUNING;
 
 /// Student's t for 95 % on both sides with one degree of freedom less than there are replicates (Abramowitz & Stegun,
 /// table 26.10).
@@ -42,24 +43,32 @@ pub struct Replicates {
     deviations: Vec<f64>,
     /// By quantile, replicate by replicate.
     quantiles: Vec<Vec<f64>>,
+    /// The shares below them.
+    shares: Vec<f64>,
+    /// Values of all replicates, where they are few.
+    pooled: Vec<f64>,
 }
 
 impl Replicates {
-    /// Before the first.
-    pub fn new(quantiles: usize) -> Self {
-        Self { quantiles: vec![Vec::with_capacity(REPLICATES); quantiles], ..Self::default() }
+    /// Before the first, with the quantiles below which these shares lie.
+    pub fn new(shares: &[f64]) -> Self {
+        let quantiles = vec![Vec::with_capacity(REPLICATES); shares.len()];
+        Self { quantiles, shares: shares.to_vec(), ..Self::default() }
     }
 
-    /// Adds a replicate, whose values are sorted; `shares` are those below the quantiles.
-    pub fn add(&mut self, values: &mut [f64], shares: &[f64]) {
+    /// Adds a replicate, whose values are sorted.
+    pub fn add(&mut self, values: &mut [f64]) {
         let n = values.len() as f64;
         let mean = values.iter().sum::<f64>() / n;
         let squares: f64 = values.iter().map(|x| (x - mean) * (x - mean)).sum();
         self.means.push(mean);
         self.deviations.push((squares / (n - 1.0)).sqrt());
+        if values.len() <= TUNING.pooled {
+            self.pooled.extend_from_slice(values);
+        }
         // NaN is the first or the last.
         values.sort_unstable_by(f64::total_cmp);
-        for (quantiles, &share) in self.quantiles.iter_mut().zip(shares) {
+        for (quantiles, &share) in self.quantiles.iter_mut().zip(&self.shares) {
             quantiles.push(quantile_of(values, share));
         }
     }
@@ -74,9 +83,21 @@ impl Replicates {
         Estimate::of(&self.deviations)
     }
 
-    /// Quantiles, in the order of their shares.
+    /// Quantiles, in the order of their shares. Of few samples they are those of all replicates together: a law that
+    /// bends between the first or the last values of a replicate leaves all replicates off by the same, of which their
+    /// spread says nothing.
     pub fn quantiles(&self) -> Vec<Estimate> {
-        self.quantiles.iter().map(|values| Estimate::of(values)).collect()
+        let of_replicates = self.quantiles.iter().map(|values| Estimate::of(values));
+        if self.pooled.is_empty() {
+            return of_replicates.collect();
+        }
+        let mut sorted = self.pooled.clone();
+        sorted.sort_unstable_by(f64::total_cmp);
+        let together = |(own, share): (Estimate, &f64)| {
+            let value = quantile_of(&sorted, *share);
+            Estimate { value, sampling: own.sampling + (value - own.value).abs() }
+        };
+        of_replicates.zip(&self.shares).map(together).collect()
     }
 }
 
@@ -105,12 +126,12 @@ mod tests {
     #[test]
     fn a_normal_laws_numbers_lie_within_their_confidence() {
         let shares = [0.001_349_898, 0.5, 0.998_650_102];
-        let mut replicates = Replicates::new(3);
+        let mut replicates = Replicates::new(&shares);
         for number in 0..REPLICATES {
             let points = replicate(number, 2, 1 << 14);
             let sum = |p: &[f64]| 2.0 + 3.0 * normal_quantile(p[0]) + 4.0 * normal_quantile(p[1]);
             let mut values: Vec<f64> = points.chunks_exact(2).map(sum).collect();
-            replicates.add(&mut values, &shares);
+            replicates.add(&mut values);
         }
         // N(2, 5²)
         let near = |estimate: Estimate, truth: f64, most: f64| {
@@ -123,6 +144,29 @@ mod tests {
         near(low, -13.0, 0.1);
         near(middle, 2.0, 1e-2);
         near(high, 17.0, 0.1);
+    }
+
+    /// Between the first values of a few samples a law may bend: each replicate is off by the same.
+    #[test]
+    fn quantiles_of_few_samples_lie_within_their_confidence() {
+        let share = 0.001_349_898;
+        let of_square: fn(&[f64]) -> f64 = |p| p[0] * p[0] * (1.0 + p[1]);
+        let of_power: fn(&[f64]) -> f64 = |p| (0.6 * p[0] + 0.4 * p[1]).powi(6);
+        // P(u² (1 + v) < q) = 2 (√2 − 1) √q, and P((0.6 u + 0.4 v)⁶ < q) = q^(1/3) / 0.48, of small q.
+        let square = (share / (2.0 * (2.0_f64.sqrt() - 1.0))).powi(2);
+        let power = (0.48 * share).powi(3);
+        for (law, truth) in [(of_square, square), (of_power, power)] {
+            for count in [1 << 9, 1 << 10, 1 << 11] {
+                let mut replicates = Replicates::new(&[share]);
+                for number in 0..REPLICATES {
+                    let mut values: Vec<f64> = replicate(number, 2, count).chunks_exact(2).map(law).collect();
+                    replicates.add(&mut values);
+                }
+                let found = replicates.quantiles()[0];
+                let off = (found.value - truth).abs();
+                assert!(off <= found.sampling && off < 0.3 * truth, "{count}: {found:?} {truth}");
+            }
+        }
     }
 
     #[test]
@@ -139,8 +183,8 @@ mod tests {
     fn quantiles_of_few() {
         let shares = [0.0, 0.125, 0.25, 0.5, 1.0];
         let found = |values: &mut [f64]| {
-            let mut replicates = Replicates::new(shares.len());
-            replicates.add(values, &shares);
+            let mut replicates = Replicates::new(&shares);
+            replicates.add(values);
             replicates.quantiles.concat()
         };
         assert_eq!(found(&mut [4.0, 1.0, 3.0, 2.0]), [1.0, 1.0, 1.5, 2.5, 4.0]);

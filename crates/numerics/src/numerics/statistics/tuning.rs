@@ -17,6 +17,8 @@ tuning! {
         places_apart: f64 = 0.7, moves "shares of failing products";
         /// Random shifts of a lattice of samples: the replicates tell sampling errors.
         replicates: usize = 16, moves "statistics, and their sampling errors";
+        /// Quantiles of at most so many samples of a replicate are those of all replicates together.
+        pooled: usize = 1 << 12, moves "quantiles of few samples, and their sampling errors";
         /// Largest normal score up to which a law without a closed quantile is tabulated.
         farthest_score: i32 = 9, moves "samples of laws without a closed quantile";
         /// Intervals to a score of the table of a law without a closed quantile.

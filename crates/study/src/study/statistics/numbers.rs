@@ -17,13 +17,13 @@ pub(super) fn all(rows: &Rows) -> Result<Vec<NumberStatistics>, String> {
     let shares = rows.shares(true);
     let at_products = rows.products.as_ref().map(|products| (products, kept.values(&products.samples)));
     let fewer = rows.fewer(TUNING.most_samples_of_numbers / REPLICATES);
-    let mut of_number = vec![Replicates::new(shares.len()); reduced.len()];
+    let mut of_number = vec![Replicates::new(&shares); reduced.len()];
     for replicate in 0..REPLICATES {
         rows.progress(replicate, REPLICATES);
         let samples = rows.points(replicate, fewer);
         for (own, values) in of_number.iter_mut().zip(kept.values(&samples)) {
             rows.go_on()?;
-            own.add(&mut { values }, &shares);
+            own.add(&mut { values });
         }
     }
     let number = |(index, own): (usize, Replicates)| {

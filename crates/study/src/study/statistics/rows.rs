@@ -151,10 +151,10 @@ impl<'a> Rows<'a> {
         let own_error = self.own_error(row, output, stated.total[row]);
         let variate = self.control_variate(row, output);
         let shares = self.shares(variate.is_some());
-        let mut replicates = Replicates::new(shares.len());
+        let mut replicates = Replicates::new(&shares);
         for replicate in 0..REPLICATES {
             self.go_on()?;
-            replicates.add(&mut self.values(row, output, replicate, fewer, own_error.is_some()), &shares);
+            replicates.add(&mut self.values(row, output, replicate, fewer, own_error.is_some()));
         }
         let error = stated.total[row] + own_error.unwrap_or(0.0);
         let (moments, resolved) = match variate {
