@@ -70,7 +70,12 @@ fn climb(start: &[f64], points: usize, known: f64, f: &dyn Fn(&[f64]) -> f64) ->
     for _ in 0..STAGES {
         let (mut steps, mut progress) = (vec![size; n], vec![0.0; n]);
         let (mut gained, mut failed) = (vec![false; n], vec![false; n]);
-        while steps.iter().any(|step| step.abs() > FINEST) && !gained.iter().zip(&failed).all(|(a, b)| *a && *b) {
+        // A direction is done with once it has failed after a gain, or at the finest step: one that never gains would
+        // else keep the others at it, rounding by rounding.
+        let is_done = |along: usize, steps: &[f64], gained: &[bool], failed: &[bool]| {
+            (gained[along] && failed[along]) || steps[along].abs() <= FINEST
+        };
+        while !(0..n).all(|along| is_done(along, &steps, &gained, &failed)) {
             for along in 0..n {
                 let moved = place.iter().zip(&directions[along]).zip(start).map(|((at, direction), start)| {
                     (at + steps[along] * direction).clamp((start - 1.0).max(0.0), (start + 1.0).min(last))
