@@ -7,9 +7,9 @@
 //! ```
 //!
 //! `MBINT_FALSIFY_FAMILY=pulse` draws from families whose names begin so, `MBINT_FALSIFY_ONLY=17` the draw of that
-//! number, whose model it prints, `MBINT_FALSIFY_FIRST=300` begins with that number; `MBINT_FALSIFY_SECONDS=600` begins no draw after ten
-//! minutes, `MBINT_FALSIFY_THREADS=1` makes them one after the other, `MBINT_FALSIFY_PATIENCE=300` waits five
-//! minutes for one (60 s), as a busy machine needs.
+//! number, whose model it prints, `MBINT_FALSIFY_FIRST=300` begins with that number; `MBINT_FALSIFY_SECONDS=600`
+//! begins no draw after ten minutes, `MBINT_FALSIFY_THREADS=1` makes them one after the other,
+//! `MBINT_FALSIFY_PATIENCE=300` waits five minutes for one (60 s), as a busy machine needs.
 //! `MBINT_FALSIFY_RECORD=FILE` notes every draw in a file; those that it has are not repeated, and count in the table.
 //! `MBINT_FALSIFY_SHOWN=2` makes two misses of each family and method simple and prints them as models;
 //! `MBINT_FALSIFY_MISSES=FOLDER` writes them there as well.

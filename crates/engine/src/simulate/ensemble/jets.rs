@@ -163,8 +163,8 @@ impl SchemeJet<'_> {
         }
     }
 
-    /// The outputs (output, coefficient). Their accelerations are those of [`super::row_accelerations`]; where these have no jet,
-    /// those of the steps.
+    /// The outputs (output, coefficient). Their accelerations are those of [`super::row_accelerations`]; where these
+    /// have no jet, those of the steps.
     fn observe(&mut self, into: &mut [f64]) {
         let layout = &self.simulator.program.layout;
         let unknowns = layout.v.start..layout.lambda.end;
