@@ -10,9 +10,7 @@ mod scalar;
 use std::time::Instant;
 
 use mbint::inner::numerics::Sample;
-use mbint::inner::simulate::{
-    EnsembleRun, Integrator, JetBox, JetIntegrator, JetRun, Observed, Schedule, Simulator, Steps,
-};
+use mbint::inner::simulate::{EnsembleRun, Integrator, JetBox, Observed, Schedule, Simulator, Steps, jet_integrator};
 use mbint::inner::study;
 use mbint::results::Method;
 use models::STEP;
@@ -110,10 +108,11 @@ fn taylor() -> Value {
     let center: Vec<f64> = parameters.iter().map(|p| 0.5 * (p.lower + p.upper)).collect();
     let half_width: Vec<f64> = parameters.iter().map(|p| 0.5 * (p.upper - p.lower)).collect();
     let (seconds, _) = best(10, || {
-        let mut jet = JetRun::start(&simulator, &space, JetBox { center: &center, half_width: &half_width }, STEP)
-            .expect("the centre can be assembled");
+        let about = JetBox { center: &center, half_width: &half_width };
+        let mut jet = jet_integrator(&simulator, &space, about, &schedule).expect("the centre can be assembled");
         let mut values = Vec::new();
-        assert!(jet.advance(&schedule, 0..schedule.rows, &mut values).is_none());
+        let steps = Steps { schedule: &schedule, controller: None };
+        assert!(jet.advance(steps, 0..schedule.rows, Observed::Outputs, &mut values).is_empty());
         values
     });
     json!(seconds)
