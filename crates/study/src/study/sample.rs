@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use super::bounding::simulation_error;
 use super::problem::Study;
-use super::stepping::{StepPlan, balance, controlling_samples, divided, planned};
+use super::stepping::{StepPlan, balance, controlling_samples, divided, planned, segmented_samples};
 
 use super::ensemble::{Motions, Progress, Stored, samples_of_part};
 use super::prepared::{Prepared, choices, prepare};
@@ -85,7 +85,7 @@ pub fn sample<T: Send, E: From<RunError> + Send>(
             Ok(study)
         });
         let studies = studies.collect::<Result<Vec<Study>, RunError>>()?;
-        let steps = studies.iter().map(steps_and_end).collect::<Result<Vec<_>, _>>();
+        let steps = studies.iter().map(steps_of_samples).collect::<Result<Vec<_>, _>>();
         let (steps, ended): (Vec<StepPlan>, Vec<_>) = steps.map_err(RunError::from)?.into_iter().unzip();
         let rows = steps.iter().map(|plan| plan.schedule.rows).max().unwrap_or(0);
         let times = steps.iter().find(|plan| plan.schedule.rows == rows);
@@ -290,13 +290,17 @@ fn of_subsystem(subsystem: &Subsystem, sample: &Sample) -> Sample {
     subsystem.parameters.iter().map(|&number| sample[number]).collect()
 }
 
-/// The steps of chosen samples: the model's, divided where they do not resolve a function of the time; with a tolerance
-/// those that a run would try first.
-pub(super) fn steps_of_samples(study: &Study) -> Result<StepPlan, SimulationError> {
-    Ok(steps_and_end(study)?.0)
+/// The steps of chosen samples, each of which is cut at its own events where that can be done: else those of
+/// [`steps_and_end`].
+pub(super) fn steps_of_samples(study: &Study) -> Result<(StepPlan, Option<SimulationError>), SimulationError> {
+    match segmented_samples(study)? {
+        Some(schedule) => Ok((StepPlan::fixed(schedule), None)),
+        None => steps_and_end(study),
+    }
 }
 
-/// The same, with the error that ended the control of the steps before the last row, if there is one.
+/// The model's steps, divided where they do not resolve a function of the time; with a tolerance those that a run would
+/// try first. With them the error that ended their control before the last row, if there is one.
 pub(super) fn steps_and_end(study: &Study) -> Result<(StepPlan, Option<SimulationError>), SimulationError> {
     let (plan, ended) = planned(study, controlling_samples)?;
     if study.request.tolerance.is_some() && study.domain.dimension() > 0 {

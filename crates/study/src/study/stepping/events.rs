@@ -3,7 +3,7 @@
 use super::controlled::controlling_samples;
 use super::validated::may_extrapolate;
 use crate::methods::Keep;
-use crate::model::Stepping;
+use crate::model::{Analysis, Description, Stepping};
 use crate::numerics::{Sample, spread};
 use crate::results::{EventSummary, EventsFollowed, MethodSummary};
 use crate::simulate::{Boundary, Counters, Schedule, SimulationError, SwitchSearch, WordsEnd, segments_of};
@@ -24,9 +24,10 @@ pub fn segmented(study: &Study) -> Result<Option<Schedule>, SimulationError> {
     Ok(schedule.filter(|schedule| !accumulates || lasts(study, schedule)))
 }
 
-/// Steps between the events that single samples meet, if there are any and these can be cut there up to the end.
+/// Steps between the events that single samples meet, if there are any and these can be cut there up to the end. A
+/// random motion meets more than are followed.
 pub fn segmented_samples(study: &Study) -> Result<Option<Schedule>, SimulationError> {
-    if !(may_extrapolate(study) && opens_nothing(study)) {
+    if !may_extrapolate(study) || !opens_nothing(study) || is_random(study.description) {
         return Ok(None);
     }
     let schedule = segments_of_samples(study, &event_samples(study))?;
@@ -120,8 +121,12 @@ fn may_be_cut(study: &Study) -> bool {
         && within
         && !methods.is_empty()
         && study.request.keep != Keep::WholeBox
-        && study.stored.is_none()
         && opens_nothing(study)
+}
+
+/// Whether motions are random: each has a seed.
+pub fn is_random(description: &Description) -> bool {
+    description.analysis == Analysis::Motion && description.trajectories.iter().any(|own| own.random().is_some())
 }
 
 /// Constraints that open later are not watched for.
