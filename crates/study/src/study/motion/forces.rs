@@ -47,17 +47,28 @@ fn simulated(
     let mut rows: Vec<DrawingValues> = Vec::new();
     let nominal = [asking.domain.nominal.clone()];
     let (found, _) = asking.of_samples(description, &nominal, numbers, |_, _, values| rows.push(values))?;
-    // Both runs have rows at the same times, this one perhaps more of them.
-    let row = |time: f64| found.partition_point(|&known| known < time - 1e-9 * time.abs()).min(found.len() - 1);
     if found.is_empty() {
         return Ok(Vec::new());
     }
+    // Both runs have rows at the same times, this one perhaps more of them; or fewer, where only other samples meet
+    // events.
+    let row = |time: f64| {
+        let after = found.partition_point(|&known| known < time - 1e-9 * time.abs()).min(found.len() - 1);
+        let before = if found[after] > time + 1e-9 * time.abs() { after.saturating_sub(1) } else { after };
+        let share = if after > before { (time - found[before]) / (found[after] - found[before]) } else { 0.0 };
+        (before, after, share)
+    };
     let along = |wanted: &AskedForce| -> Vec<f64> {
         let at = |values: &DrawingValues| {
             let [place, force] = [wanted.at, wanted.force].map(|asked| values.vector(asked));
             [place.x, place.y, place.z, force.x, force.y, force.z]
         };
-        times.iter().flat_map(|&time| at(&rows[row(time)])).collect()
+        let of_time = |&time: &f64| {
+            let (before, after, share) = row(time);
+            let (from, to) = (at(&rows[before]), at(&rows[after]));
+            std::array::from_fn::<f64, 6, _>(|number| from[number] + share * (to[number] - from[number]))
+        };
+        times.iter().flat_map(of_time).collect()
     };
     let all = wanted.into_iter().map(|wanted| {
         let values = along(&wanted);
