@@ -5,11 +5,11 @@ use std::borrow::Cow;
 use rayon::prelude::*;
 
 use super::super::drawing::asked::{DrawingOutputs, DrawingValues};
-use super::super::stepping::{StepPlan, is_random};
+use super::super::stepping::StepPlan;
 use super::super::{RunError, formulation};
 use super::tuning::TUNING;
 use crate::assemble::Questions;
-use crate::model::{Analysis, Description, ModesRequest, SchemeChoice, Simulation, Stepping};
+use crate::model::{Analysis, Description, ModesRequest, Stepping};
 use crate::numerics::{ParameterBox, Sample};
 use crate::simulate::{
     Controller, Integration, Interruption, Observed, Schedule, SimulationError, Simulator, Steps, TimeFunctions,
@@ -21,6 +21,8 @@ pub(in crate::study) struct MotionRows<'a> {
     pub(in crate::study) simulator: Simulator,
     pub(super) domain: ParameterBox,
     pub(super) interruption: Interruption<'a>,
+    /// Whether motions are cut at events where they can be.
+    pub(super) between_events: bool,
 }
 
 /// Simulated samples.
@@ -36,6 +38,11 @@ struct Running<'a> {
 /// How many rows one stands for that is looked at, of so many numbers.
 fn every(numbers: usize) -> usize {
     numbers.div_ceil(TUNING.most_numbers).max(1)
+}
+
+/// The nominal sample and corners of the box, which come first.
+fn controlling(samples: &[Sample]) -> &[Sample] {
+    &samples[..samples.len().min(1 + TUNING.controlling)]
 }
 
 impl<'a> MotionRows<'a> {
@@ -56,7 +63,7 @@ impl<'a> MotionRows<'a> {
             upper: parameters.iter().map(|parameter| parameter.upper).collect(),
             zones: Vec::new(),
         };
-        Ok(Self { simulator, domain, interruption })
+        Ok(Self { simulator, domain, interruption, between_events: false })
     }
 
     /// Times of the rows that are looked at, and where samples stop. What is asked is given to `keep`: the sample,
@@ -165,19 +172,19 @@ impl<'a> MotionRows<'a> {
         Ok(times[..reached.min(times.len())].to_vec())
     }
 
-    /// Steps between the events of samples, which each has at its own times; `None` where they are not cut there up to
-    /// the end. Rows are denser than those of the outputs by a power of two.
+    /// Steps between the events that controlling samples meet, which each sample has at its own times; `None` where they
+    /// are not cut there up to the end. Rows are denser than those of the outputs by a power of two.
     fn between_events(
         &self,
         description: &Description,
         samples: &[Sample],
     ) -> Result<Option<Schedule>, SimulationError> {
-        let Simulation { scheme, extrapolation, duration, output_step, .. } = description.simulation;
-        let is_chosen = scheme == SchemeChoice::Auto && extrapolation.is_none();
-        if !is_chosen || is_random(description) || !self.simulator.mobility.redundant.is_empty() {
+        // Constraints that open later are not watched for.
+        if !self.between_events || !self.simulator.mobility.redundant.is_empty() {
             return Ok(None);
         }
-        let found = segments_of(&self.simulator, &self.domain, samples, duration, TUNING.event_error)?;
+        let (duration, output_step) = (description.simulation.duration, description.simulation.output_step);
+        let found = segments_of(&self.simulator, &self.domain, controlling(samples), duration, TUNING.event_error)?;
         let rows = Schedule::rows_of(duration, output_step);
         let finer = (TUNING.rows_between_events / rows).max(1).ilog2();
         let dense = output_step / f64::from(1 << finer);
@@ -199,10 +206,9 @@ impl<'a> MotionRows<'a> {
                 (Schedule::fixed(duration, step, output_step).taken(integration), None)
             }
             Stepping::Tolerance(tolerance) => {
-                let controlling = &samples[..samples.len().min(1 + TUNING.controlling)];
                 let found = schedule_for_tolerance(
                     &self.simulator,
-                    controlling,
+                    controlling(samples),
                     duration,
                     output_step,
                     tolerance,
@@ -256,7 +262,12 @@ simulation: { duration: 2, step: 1e-3, output_step: 0.02 }
     #[test]
     fn each_sample_bounces_at_its_own_times() {
         let description = model::load_str("ball.yaml", BALL, &[]).unwrap_or_else(|errors| panic!("{errors}"));
-        let options = MotionOptions { threads: Some(2), size: 300_000, interruption: Interruption::default() };
+        let options = MotionOptions {
+            threads: Some(2),
+            size: 300_000,
+            interruption: Interruption::default(),
+            between_events: true,
+        };
         let motion = report_motion(&description, &[], options).unwrap();
         assert!(motion.samples.len() > 8 && motion.stopped == 0);
         let named = |name: &str| motion.parameters.iter().position(|own| own.name == name).unwrap();
