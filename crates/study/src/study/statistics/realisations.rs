@@ -73,12 +73,12 @@ pub(super) fn realisations(
     samples: &[Vec<f64>],
     progress: &Progress,
 ) -> Result<Option<Realisations>, SimulationError> {
-    let (plan, _) = steps_of_samples(study)?;
-    plan_reduction(study, &plan)?;
     let own = |sample: &Vec<f64>| subsystem.parameters.iter().map(|&number| sample[number]).collect();
     // Without parameters and seeds, one motion is that of all samples.
     let count = if study.domain.dimension() == 0 { 1 } else { samples.len() };
     let all: Vec<Sample> = samples[..count].iter().map(own).collect();
+    let (plan, _) = steps_of_samples(study, &all)?;
+    plan_reduction(study, &plan)?;
     let Some(direct) = simulated(study, &plan, &all, progress)? else { return Ok(None) };
     let few = &all[..count.min(TUNING.halved)];
     let Some(halved) = simulated(study, &plan.halved(), few, progress)? else { return Ok(None) };

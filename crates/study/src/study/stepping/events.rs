@@ -24,13 +24,17 @@ pub fn segmented(study: &Study) -> Result<Option<Schedule>, SimulationError> {
     Ok(schedule.filter(|schedule| !accumulates || lasts(study, schedule)))
 }
 
-/// Steps between the events that single samples meet, if there are any and these can be cut there up to the end. A
-/// random motion meets more than are followed.
-pub fn segmented_samples(study: &Study) -> Result<Option<Schedule>, SimulationError> {
-    if !may_extrapolate(study) || !opens_nothing(study) || is_random(study.description) {
+/// Steps between the events that single samples meet, if there are any and these can be cut there up to the end. Samples
+/// show their events themselves if they are fewer than those that show the box's. A random motion meets more than are
+/// followed.
+pub fn segmented_samples(study: &Study, samples: &[Sample]) -> Result<Option<Schedule>, SimulationError> {
+    let may_be_cut = may_extrapolate(study) && opens_nothing(study) && !has_given_steps(study);
+    if !may_be_cut || is_random(study.description) {
         return Ok(None);
     }
-    let schedule = segments_of_samples(study, &event_samples(study))?;
+    let of_box = event_samples(study);
+    let shown = if samples.len() < of_box.len() { samples } else { &of_box };
+    let schedule = segments_of_samples(study, shown)?;
     Ok(schedule.filter(|schedule| lasts(study, schedule)))
 }
 
@@ -112,16 +116,18 @@ fn event_samples(study: &Study) -> Vec<Sample> {
 fn may_be_cut(study: &Study) -> bool {
     let problem = problem(study.description, &study.simulator);
     let methods = study.request.methods();
-    // What depends on nothing keeps the steps that it is given.
-    let within = match study.domain.dimension() {
-        0 => study.request.tolerance.is_some() || !problem.has_fixed_steps,
-        _ => methods.iter().all(|(_, method)| method.follows_events(&problem)),
-    };
     may_extrapolate(study)
-        && within
+        && (study.domain.dimension() == 0 || methods.iter().all(|(_, method)| method.follows_events(&problem)))
         && !methods.is_empty()
         && study.request.keep != Keep::WholeBox
         && opens_nothing(study)
+        && !has_given_steps(study)
+}
+
+/// Whether a motion depends on nothing, and keeps the steps that it is given.
+fn has_given_steps(study: &Study) -> bool {
+    let is_fixed = matches!(study.description.simulation.stepping, Stepping::Fixed(_));
+    study.domain.dimension() == 0 && study.request.tolerance.is_none() && is_fixed
 }
 
 /// Whether motions are random: each has a seed.
