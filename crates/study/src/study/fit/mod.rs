@@ -63,6 +63,10 @@ pub fn fit(description: &Description, measurements: &Measurements, options: &Opt
     model.reduced.clear();
     model.requirements.clear();
     model.statistics.asked = false;
+    // Rows at the measured times need no interpolation.
+    if let Some(step) = measurements.row_step(&model.simulation) {
+        model.simulation.output_step = step;
+    }
     let pool = pool(options.threads);
     pool.map_err(RunError::from)?.install(|| fitted(&model, measurements, options))
 }

@@ -119,7 +119,7 @@ fn may_be_cut(study: &Study) -> bool {
     may_extrapolate(study)
         && (study.domain.dimension() == 0 || methods.iter().all(|(_, method)| method.follows_events(&problem)))
         && !methods.is_empty()
-        && study.request.keep != Keep::WholeBox
+        && !(study.request.keep == Keep::WholeBox && is_random(study.description))
         && opens_nothing(study)
         && !has_given_steps(study)
 }
