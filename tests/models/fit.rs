@@ -258,19 +258,23 @@ fn bounced(stiffness: f64, height: f64, t: f64) -> f64 {
 #[test]
 fn the_truth_of_a_bouncing_ball_is_not_excluded() {
     let model = Model::from_yaml_str("ball.yaml", BALL).unwrap();
-    for number in 0..4 {
+    for number in 0..6 {
         let mut random = Random(2007 + 7919 * number);
         let xi = [(); 2].map(|()| between(&mut random, -1.0, 1.0));
         let (stiffness, height) = (1e5 * (1.0 + 0.05 * xi[0]), 1.0 + 0.02 * xi[1]);
+        // Of the last two the times have no common step: values are interpolated, but not beside impacts.
+        let is_regular = number < 4;
+        let late = |random: &mut Random| if is_regular { 0.0 } else { between(random, -0.012, 0.0) };
         let rows = (1..=80).map(|row| 0.025 * f64::from(row));
-        let rows = rows.map(|t| [t, bounced(stiffness, height, t) + between(&mut random, -2e-3, 2e-3)]);
+        let rows: Vec<f64> = rows.map(|t| t + late(&mut random)).collect();
+        let rows = rows.into_iter().map(|t| [t, bounced(stiffness, height, t) + between(&mut random, -2e-3, 2e-3)]);
         let table = rows.fold("time,y\n".to_owned(), |text, [t, y]| text + &format!("{t:?},{y:?}\n"));
         let found = model.study().fit(&table, &[("y", "2 mm")]).unwrap();
         let set = found.set.as_ref().unwrap();
         assert!(set.paving.may_contain(&xi), "draw {number}: {xi:?} is excluded");
-        assert!(set.volumes[1] < 0.02, "draw {number}: {:?}", set.volumes);
+        assert!(set.volumes[1] < if is_regular { 0.02 } else { 0.1 }, "draw {number}: {:?}", set.volumes);
         assert!(found.residual < 0.75, "draw {number}: {}", found.residual);
-        let errors = found.rows.iter().map(|row| row.error);
-        assert!(errors.fold(0.0, f64::max) < 2e-5, "draw {number}: errors");
+        let errors = found.rows.iter().map(|row| row.error).filter(|error| is_regular || error.is_finite());
+        assert!(errors.fold(0.0, f64::max) < if is_regular { 2e-5 } else { 2e-3 }, "draw {number}: errors");
     }
 }
