@@ -29,18 +29,15 @@ impl Interpolation {
         })
     }
 
-    /// Parabolas at a time through three rows before it and three behind it: rows with their weights. Where an impact is
-    /// beside the time, they differ from [`fine`](Self::fine); none where the time is that of a row.
+    /// Parabolas at a time through three rows before it and three behind it: rows with their weights. Where an impact
+    /// is beside the time, they differ from [`fine`](Self::fine); none where the time is that of a row.
     pub fn sides(&self, times: &[f64], time: f64) -> Vec<Vec<(usize, f64)>> {
         let next = times.partition_point(|own| *own < time);
         let sides = [next.saturating_sub(2), next + 1];
         let sides = sides.into_iter().filter(|_| !self.coarse.is_empty());
-        sides.map(|next| row_weights(times, time, next, ROWS_OF_SIDE).collect()).collect()
+        sides.map(|next| row_weights(times, time, next, TUNING.rows_of_side).collect()).collect()
     }
 }
-
-/// Rows of a parabola.
-const ROWS_OF_SIDE: usize = 3;
 
 /// Lagrange's polynomials at a time through `count` rows, half of them before row `next`: rows with their weights.
 pub fn row_weights(times: &[f64], time: f64, next: usize, count: usize) -> impl Iterator<Item = (usize, f64)> {

@@ -40,9 +40,8 @@ struct Reading {
     output: usize,
     /// `None` where the motion ends before.
     interpolation: Option<Interpolation>,
-    /// What differs from it beside an impact, of a model that has some,
+    /// Interpolations from either side, of a model that switches: beside an impact they differ by more than the noise.
     sides: Vec<Vec<(usize, f64)>>,
-    /// by more than this.
     noise: f64,
 }
 

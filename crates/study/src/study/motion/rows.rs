@@ -172,8 +172,8 @@ impl<'a> MotionRows<'a> {
         Ok(times[..reached.min(times.len())].to_vec())
     }
 
-    /// Steps between the events that controlling samples meet, which each sample has at its own times; `None` where they
-    /// are not cut there up to the end. Rows are denser than those of the outputs by a power of two.
+    /// Steps between the events that controlling samples meet, which each sample has at its own times; `None` where
+    /// they are not cut there up to the end. Rows are denser than those of the outputs by a power of two.
     fn between_events(
         &self,
         description: &Description,

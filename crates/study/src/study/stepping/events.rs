@@ -24,9 +24,9 @@ pub fn segmented(study: &Study) -> Result<Option<Schedule>, SimulationError> {
     Ok(schedule.filter(|schedule| !accumulates || lasts(study, schedule)))
 }
 
-/// Steps between the events that single samples meet, if there are any and these can be cut there up to the end. Samples
-/// show their events themselves if they are fewer than those that show the box's. A random motion meets more than are
-/// followed.
+/// Steps between the events that single samples meet, if there are any and these can be cut there up to the end.
+/// Samples show their events themselves if they are fewer than those that show the box's. A random motion meets more
+/// than are followed.
 pub fn segmented_samples(study: &Study, samples: &[Sample]) -> Result<Option<Schedule>, SimulationError> {
     let may_be_cut = may_extrapolate(study) && opens_nothing(study) && !has_given_steps(study);
     if !may_be_cut || is_random(study.description) {
