@@ -137,7 +137,8 @@ fn run_and_write(job: &Job, request: &Request) -> Result<Done, Failure> {
     let provenance = Provenance { model_files: job.files.clone(), request: Some(asked) };
     let stage = |name| request.settings.profile.iter().for_each(|profile| profile.stage(name));
     stage("motion for the report");
-    let parts = (request.report && !interrupted).then(|| page::parts(job, &bounds.functions, request.settings.threads));
+    let parts = (request.report && !interrupted)
+        .then(|| page::parts(job, &bounds.functions, &summary, request.settings.threads));
     // Half a motion is none.
     let parts = parts.filter(|_| !interrupt::asked());
     stage("writing files");

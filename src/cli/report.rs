@@ -6,7 +6,7 @@ use super::interrupt;
 use super::request::Job;
 use super::{Failure, Status};
 use crate::export::{MOST_TRIANGLES, ReportParts, read_meshes, write_report};
-use crate::results::FunctionWitness;
+use crate::results::{FunctionWitness, Summary};
 use crate::simulate::Interruption;
 use crate::study::{self, MotionOptions};
 
@@ -18,11 +18,12 @@ pub(super) fn report(args: &ReportArgs, console: &mut Console) -> Result<Status,
 }
 
 /// What a report shows of a job beside its results. The page says so where a motion cannot be simulated.
-pub(super) fn parts(job: &Job, worst: &[FunctionWitness], threads: Option<usize>) -> ReportParts {
+pub(super) fn parts(job: &Job, worst: &[FunctionWitness], summary: &Summary, threads: Option<usize>) -> ReportParts {
     let options = MotionOptions {
         threads,
         size: study::REPORT_SIZE / job.share.max(1),
         interruption: Interruption::new(&interrupt::asked),
+        between_events: study::is_between_events(summary),
     };
     let motion = study::report_motion(&job.model, worst, options);
     let motion = motion.map(|mut found| {

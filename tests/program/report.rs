@@ -47,6 +47,31 @@ fn a_report_of_modes_with_responses_has_the_mechanism() {
     assert!(motion.contains("\"drawing\"") && !motion.contains("internal error"), "{motion}");
 }
 
+/// A throw at 5 m/s ± 10 % meets a ceiling at 1.3 m beyond √(2 · 9.81 · 1.3) = 5.0503 m/s: in 44.97 % of the box.
+#[test]
+fn events_in_a_part_of_the_box_are_in_the_page() {
+    let place = Place::new();
+    let model = "
+model: ceiling
+parameters: { v0: { value: 5, unit: m/s, tolerance: 10% } }
+bodies: { ball: { mass: 1, coordinates: [y] } }
+effects:
+  weight: { gravity: { acceleration: [0, -9.81] } }
+  ceiling: { force: { on: ball, value: [0, \"-1e5*max(ball.y - 1.3, 0)\"] } }
+initial: { ball.y: 0, ball.vy: v0 }
+outputs: { y: ball.y, hit: { when: ball.y > 1.3 m } }
+simulation: { duration: 0.6, step: 1e-3, output_step: 0.05 }
+bounds: { chebyshev: { order: 5 } }
+";
+    fs::write(place.path().join("ceiling.yaml"), model).unwrap();
+    place.run("run -q ceiling.yaml", 0);
+    let page = fs::read_to_string(place.path().join("results/ceiling/report.html")).unwrap();
+    assert!(page.contains(" samples, 45.0&#8239;% of the box</td>"), "no share");
+    let events = page.split("<section class=\"events\">").nth(1).unwrap().split("</section>").next().unwrap();
+    assert!(events.contains("ball.y - 1.3") && events.contains("v0 = 5.05"), "{events}");
+    assert!(page.contains("between events</td>"), "another scheme");
+}
+
 #[test]
 fn a_folder_without_results_is_named() {
     let place = Place::new();

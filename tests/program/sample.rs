@@ -157,3 +157,53 @@ simulation: { duration: 0.1 s, step: 1e-3, output_step: 0.05 }
     assert_eq!(known, [true, true, true, false, false, false, true, true, true]);
     assert!((x[0] - 0.5).abs() < 1e-9 && (x[6] - 0.8).abs() < 1e-9, "{x:?}");
 }
+
+/// A throw that some samples take to a stiff ceiling. Steps of the model are as long as a fifth of the contact.
+#[test]
+fn samples_are_cut_at_their_own_events() {
+    let place = Place::new();
+    let model = "
+model: ceiling
+parameters: { v0: { value: 5, unit: m/s, tolerance: 10% } }
+bodies: { ball: { mass: 1, coordinates: [y] } }
+effects:
+  weight: { gravity: { acceleration: [0, -9.81] } }
+  ceiling: { force: { on: ball, value: [0, \"-1e5*max(ball.y - 1.3, 0)\"] } }
+initial: { ball.y: 0, ball.vy: v0 }
+outputs: { y: ball.y, v: ball.vy }
+simulation: { duration: 0.8, step: 2e-3, output_step: 0.1 }
+";
+    fs::write(place.path().join("ceiling.yaml"), model).unwrap();
+    // Parabolas; in contact a spring that is hit with a speed of `left`.
+    let (g, omega) = (9.81_f64, 1e5_f64.sqrt());
+    let truth = |speed: f64, t: f64| {
+        let left = (speed * speed - 2.0 * g * 1.3).max(0.0).sqrt();
+        let (begins, contact) = ((speed - left) / g, 2.0 / omega * (left * omega / g).atan());
+        let since = t - begins - contact;
+        if left == 0.0 || t < begins {
+            [speed * t - 0.5 * g * t * t, speed - g * t]
+        } else if since < 0.0 {
+            let (sin, cos) = (omega * (t - begins)).sin_cos();
+            let push = g / (omega * omega);
+            [1.3 + left / omega * sin - push * (1.0 - cos), left * cos - push * omega * sin]
+        } else {
+            [1.3 - left * since - 0.5 * g * since * since, -left - g * since]
+        }
+    };
+    // Alone, on both sides of the one that grazes, and many.
+    let many: Vec<f64> = (0..61).map(|place| 4.5 + f64::from(place) / 60.0).collect();
+    for speeds in [&[5.3][..], &[4.8], &[4.8, 5.3], &many] {
+        let table: String = std::iter::once("v0\n".to_owned()).chain(speeds.iter().map(|v| format!("{v}\n"))).collect();
+        fs::write(place.path().join("points.csv"), table).unwrap();
+        place.run("sample ceiling.yaml --points points.csv", 0);
+        let (shape, values) = array(&place.path().join("samples.npz"), "values");
+        assert_eq!(shape, [speeds.len(), 9, 2]);
+        for (speed, of_sample) in speeds.iter().zip(values.chunks_exact(18)) {
+            for (row, found) in of_sample.chunks_exact(2).enumerate() {
+                let expected = truth(*speed, 0.1 * row as f64);
+                let distance = (found[0] - expected[0]).abs().max((found[1] - expected[1]).abs());
+                assert!(distance < 1e-6, "{speed} m/s, row {row}: {found:?}, not {expected:?}");
+            }
+        }
+    }
+}

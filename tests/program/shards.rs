@@ -241,6 +241,34 @@ fn merged_verdicts_of_parts_are_those_of_the_run() {
     assert!(summary.contains("\"subsystems\""), "{summary}");
 }
 
+/// A throw that a part of the box takes to a stiff ceiling: motions are cut at events.
+const CEILING: &str = "
+model: ceiling
+parameters: { v0: { value: 5, unit: m/s, tolerance: 10% }, H: 1.3 m, k: 1e5 N/m }
+bodies: { ball: { mass: 1, coordinates: [y] } }
+effects:
+  weight: { gravity: { acceleration: [0, -9.81] } }
+  ceiling: { force: { on: ball, value: [0, \"-k*max(ball.y - H, 0)\"] } }
+initial: { ball.y: 0, ball.vy: v0 }
+outputs: { y: ball.y, v: ball.vy, high: { max: ball.y }, hit: { when: ball.y > H } }
+requirements: { low: high <= 1.4 m }
+simulation: { duration: 0.6, step: 1e-3, output_step: 0.02 }
+bounds: { chebyshev: { order: 5 }, taylor: { order: 2 }, scan: { points: 40 } }
+statistics: { samples: 1024 }
+";
+
+#[test]
+fn merged_bounds_through_events_are_those_of_the_run() {
+    let place = Place::new();
+    fs::write(place.path().join("ceiling.yaml"), CEILING).unwrap();
+    place.run("run ceiling.yaml -o direct -q", 0);
+    let summary = fs::read_to_string(place.path().join("direct/summary.json")).unwrap();
+    assert!(summary.contains("between events") && summary.contains("grazed_at"), "{summary}");
+    place.run("plan ceiling.yaml -o study --at-once 0", 0);
+    assert!(finish(&place, "study", 0) > 1);
+    assert_eq!(tree(&place.path().join("direct")), tree(&place.path().join("study-results")));
+}
+
 /// Names of all parts of a plan.
 fn parts(place: &Place, study: &str) -> Vec<String> {
     let plan = fs::read_to_string(place.path().join(study).join("plan.json")).unwrap();

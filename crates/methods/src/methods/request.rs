@@ -39,8 +39,8 @@ pub enum Keep {
     /// None.
     #[default]
     Nothing,
-    /// One of the whole box, as exact as the bounds; beyond [`MOST_ON_GRIDS`](super::MOST_ON_GRIDS) parameters one as
-    /// for statistics.
+    /// One of the whole box, as exact as the bounds, which are of the same polynomials row by row, also of motions that
+    /// are cut at events; beyond [`MOST_ON_GRIDS`](super::MOST_ON_GRIDS) parameters one as for statistics.
     WholeBox,
     /// The same of reduced outputs and margins alone, of motions that may be cut at events.
     Margins,

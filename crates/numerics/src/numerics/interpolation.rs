@@ -28,6 +28,15 @@ impl Interpolation {
             coarse: row_weights(times, time, next, TUNING.rows_of_coarser).collect(),
         })
     }
+
+    /// Parabolas at a time through three rows before it and three behind it: rows with their weights. Where an impact
+    /// is beside the time, they differ from [`fine`](Self::fine); none where the time is that of a row.
+    pub fn sides(&self, times: &[f64], time: f64) -> Vec<Vec<(usize, f64)>> {
+        let next = times.partition_point(|own| *own < time);
+        let sides = [next.saturating_sub(2), next + 1];
+        let sides = sides.into_iter().filter(|_| !self.coarse.is_empty());
+        sides.map(|next| row_weights(times, time, next, TUNING.rows_of_side).collect()).collect()
+    }
 }
 
 /// Lagrange's polynomials at a time through `count` rows, half of them before row `next`: rows with their weights.
@@ -56,5 +65,21 @@ mod tests {
         }
         assert!(Interpolation::new(&times, 0.3).unwrap().coarse.is_empty());
         assert!(Interpolation::new(&times, 1.95).is_none());
+    }
+
+    /// |t − 1.03|: the polynomial through rows on both sides is off, and so is one of the parabolas.
+    #[test]
+    fn a_kink_is_seen_from_its_sides() {
+        let times: Vec<f64> = (0..20).map(|row| 0.1 * f64::from(row)).collect();
+        let course = |t: f64| (t - 1.03).abs();
+        let sum = |weights: &[(usize, f64)]| weights.iter().map(|&(row, weight)| weight * course(times[row])).sum();
+        for time in [0.85, 0.99, 1.01, 1.05, 1.15, 1.25] {
+            let found = Interpolation::new(&times, time).unwrap();
+            let value: f64 = sum(&found.fine);
+            let sides: Vec<f64> = found.sides(&times, time).iter().map(|side| sum(side)).collect();
+            let told = sides.iter().map(|side| (side - value).abs()).fold(0.0, f64::max);
+            assert!(sides.len() == 2 && (value - course(time)).abs() <= told + 1e-12, "{time}: {sides:?} {value}");
+        }
+        assert!(Interpolation::new(&times, 0.3).unwrap().sides(&times, 0.3).is_empty());
     }
 }

@@ -121,6 +121,8 @@ tuning! {
         rows_of_interpolation: usize = 6, moves "values between rows, and their errors";
         /// Rows of the coarser polynomial that tells its error.
         rows_of_coarser: usize = 4, moves "values between rows, and their errors";
+        /// Rows of the polynomials on either side of a time, which differ beside an impact.
+        rows_of_side: usize = 3, moves "fits of motions that switch";
         /// Nearer than this share of a row's distance is in the row.
         in_row: f64 = 1e-9, moves "values between rows, and their errors";
         /// Least spacing over that in the middle of the box.

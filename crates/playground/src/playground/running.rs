@@ -53,7 +53,8 @@ pub(super) fn run(reading: Reading, scene: Option<&str>, costly: bool, host: &dy
     let (bounds, summary) = study::run(&model, options)
         .map_err(|error| Unrun { waits: matches!(error, RunError::Costly(_)), why: error.to_string() })?;
     begin("motion for the report");
-    let options = MotionOptions { threads: None, size: REPORT_SIZE, interruption: Interruption::new(&|| false) };
+    let (interruption, between_events) = (Interruption::new(&|| false), study::is_between_events(&summary));
+    let options = MotionOptions { threads: None, size: REPORT_SIZE, interruption, between_events };
     let motion = study::report_motion(&model, &bounds.functions, options).map(|mut found| {
         read_meshes(&mut found.drawing, Path::new(""), MOST_TRIANGLES);
         found

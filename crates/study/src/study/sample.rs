@@ -5,11 +5,12 @@ use std::ops::Range;
 
 use super::bounding::simulation_error;
 use super::problem::Study;
-use super::stepping::{StepPlan, balance, controlling_samples, divided, planned};
+use super::stepping::{StepPlan, balance, controlling_samples, divided, planned, segmented_samples};
 
 use super::ensemble::{Motions, Progress, Stored, samples_of_part};
 use super::prepared::{Prepared, choices, prepare};
 use super::reduced::{plan_reduction, values_of_samples};
+use super::tuning::TUNING;
 use super::{Options, RunError, pool, reduced};
 use crate::methods::{Ensemble, Observed, Sampling, Until};
 use crate::model::Description;
@@ -85,7 +86,14 @@ pub fn sample<T: Send, E: From<RunError> + Send>(
             Ok(study)
         });
         let studies = studies.collect::<Result<Vec<Study>, RunError>>()?;
-        let steps = studies.iter().map(steps_and_end).collect::<Result<Vec<_>, _>>();
+        let first = (chosen.at)(0..chosen.count.min(TUNING.samples_of_events));
+        let steps = studies.iter().zip(&subsystems).map(|(study, subsystem)| {
+            let own: Vec<Sample> = first.iter().map(|sample| of_subsystem(subsystem, sample)).collect();
+            let can = study.simulator.can_assemble(&own);
+            let own: Vec<Sample> = own.into_iter().zip(can).filter(|(_, can)| *can).map(|(own, _)| own).collect();
+            steps_of_samples(study, &own)
+        });
+        let steps = steps.collect::<Result<Vec<_>, _>>();
         let (steps, ended): (Vec<StepPlan>, Vec<_>) = steps.map_err(RunError::from)?.into_iter().unzip();
         let rows = steps.iter().map(|plan| plan.schedule.rows).max().unwrap_or(0);
         let times = steps.iter().find(|plan| plan.schedule.rows == rows);
@@ -290,13 +298,20 @@ fn of_subsystem(subsystem: &Subsystem, sample: &Sample) -> Sample {
     subsystem.parameters.iter().map(|&number| sample[number]).collect()
 }
 
-/// The steps of chosen samples: the model's, divided where they do not resolve a function of the time; with a tolerance
-/// those that a run would try first.
-pub(super) fn steps_of_samples(study: &Study) -> Result<StepPlan, SimulationError> {
-    Ok(steps_and_end(study)?.0)
+/// The steps of chosen samples, each of which is cut at its own events where that can be done: else those of
+/// [`steps_and_end`].
+pub(super) fn steps_of_samples(
+    study: &Study,
+    samples: &[Sample],
+) -> Result<(StepPlan, Option<SimulationError>), SimulationError> {
+    match segmented_samples(study, samples)? {
+        Some(schedule) => Ok((StepPlan::fixed(schedule), None)),
+        None => steps_and_end(study),
+    }
 }
 
-/// The same, with the error that ended the control of the steps before the last row, if there is one.
+/// The model's steps, divided where they do not resolve a function of the time; with a tolerance those that a run would
+/// try first. With them the error that ended their control before the last row, if there is one.
 pub(super) fn steps_and_end(study: &Study) -> Result<(StepPlan, Option<SimulationError>), SimulationError> {
     let (plan, ended) = planned(study, controlling_samples)?;
     if study.request.tolerance.is_some() && study.domain.dimension() > 0 {

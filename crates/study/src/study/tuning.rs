@@ -14,6 +14,8 @@ tuning! {
         smallest_piece: f64 = 1.0 / 1024.0, moves "bounds of boxes in part of which there is no motion";
         /// A parameter whose failing samples lie off its middle by so much on average (of ξ) matters.
         leans: f64 = 0.2, moves "bounds of boxes in part of which there is no motion";
+        /// Chosen samples, from the first, that may show the events at which motions are cut.
+        samples_of_events: usize = 1024, moves "the last digits of chosen samples";
     }
 }
 

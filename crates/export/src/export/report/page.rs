@@ -120,6 +120,7 @@ pub(super) fn content(index: usize, scene: &PageScene, scenes: usize) -> String 
         format!("<section class=\"plots\">{plots}</section>\n"),
         statistics::statistics(summary),
         tables::reduced(summary),
+        tables::events(summary),
         tables::bounds(summary),
         tables::parameters(summary),
         tables::settings(summary),

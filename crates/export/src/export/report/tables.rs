@@ -87,6 +87,7 @@ pub(super) fn reduced(summary: &Value) -> String {
             let unresolved = if band["unresolved"] == Value::Bool(true) { ", unreliable" } else { "" };
             format!("{lower} to {upper} ({}{unresolved})", escaped(text(band, "method")))
         });
+        let bands = bands.chain(occurrence(reduced));
         vec![
             format!("{}<br><code>{}</code>", escaped(text(reduced, "name")), escaped(text(reduced, "of"))),
             shown(reduced, &reduced["nominal"]),
@@ -96,6 +97,39 @@ pub(super) fn reduced(summary: &Value) -> String {
     match list(summary, "reduced") {
         [] => String::new(),
         _ => section("reduced", "Numbers of the motion", &table(&["of", "nominal", "bounds"], rows)),
+    }
+}
+
+/// In how many samples an instant occurs, and in which share of the box; `None` where it occurs in all.
+fn occurrence(reduced: &Value) -> Option<String> {
+    let occurs = reduced.get("occurs")?;
+    let samples = format!("occurs in {} of {} samples", number(&occurs["samples"]), number(&occurs["of"]));
+    let percent: Vec<String> =
+        list(occurs, "share").iter().filter_map(Value::as_f64).map(|share| format!("{:.1}", 100.0 * share)).collect();
+    Some(match &percent[..] {
+        [least, most] if least == most => format!("{samples}, {least}&#8239;% of the box"),
+        [least, most] => format!("{samples}, {least} to {most}&#8239;% of the box"),
+        _ => samples,
+    })
+}
+
+/// Events that a part of the samples meets; nothing where there are none.
+pub(super) fn events(summary: &Value) -> String {
+    let grazed = |pair: &Value| {
+        let own = list(summary, "parameters").iter().find(|parameter| parameter["name"] == pair[0])?;
+        Some(format!("{} = {}", escaped(text(own, "name")), shown(own, &pair[1])))
+    };
+    let rows = list(summary, "events").iter().map(|event| {
+        let grazed: Vec<String> = list(event, "grazed_at").iter().filter_map(grazed).collect();
+        vec![
+            escaped(text(event, "event")),
+            format!("{} of {} samples", number(&event["met"]), number(&event["samples"])),
+            grazed.join(", or<br>"),
+        ]
+    });
+    match list(summary, "events") {
+        [] => String::new(),
+        _ => section("events", "Events in a part of the box", &table(&["event", "switches in", "is grazed at"], rows)),
     }
 }
 
@@ -152,6 +186,10 @@ pub(super) fn warnings(summary: &Value, motion: &Value) -> Vec<String> {
         let from = error["unresolved_from"].as_f64().unwrap_or(0.0);
         warnings.push(format!("Bounds of {output} by {method} are unreliable from {from} s."));
     }
+    if let Some(followed) = summary.get("events_followed") {
+        let until = followed["until"].as_f64().unwrap_or(0.0);
+        warnings.push(format!("Events are followed to {until} s: {}.", text(followed, "why")));
+    }
     for (key, what) in [
         ("redundant_constraints", "Redundant constraints, which are left out"),
         ("undetermined_outputs", "Outputs that equilibrium does not determine"),
@@ -193,13 +231,17 @@ pub(super) fn warning_list(warnings: &[String]) -> String {
 /// The simulation, its settings, and the version.
 pub(super) fn settings(summary: &Value) -> String {
     let number_of = |key: &str| number(&summary[key]);
+    let scheme = match text(summary, "integration") {
+        "" => format!("HHT-I3, α = {}", number_of("alpha")),
+        integration => escaped(integration),
+    };
     let mut rows = vec![
         ("mbint", escaped(text(summary, "mbint"))),
         ("simulated time", format!("{} s", number_of("duration"))),
         ("coordinates", format!("{} ({})", number_of("coordinates"), escaped(text(summary, "formulation")))),
         ("constraints", number_of("constraints")),
         ("degrees of freedom", number_of("degrees_of_freedom")),
-        ("scheme", format!("HHT-I3, α = {}", number_of("alpha"))),
+        ("scheme", scheme),
     ];
     let request = &summary["request"];
     let set: Vec<&str> = list(request, "set").iter().filter_map(Value::as_str).collect();

@@ -22,7 +22,7 @@ use super::BoundsRequest;
 use super::ensemble::{Ensemble, EnsembleError, Interrupted, Observed, Sampling, Simulated, Until, lines};
 use super::kept::{KeptRow, KeptSurrogate};
 use super::registry::{About, BoundingMethod, CostCurve, Refusal, Registered, Varied};
-use super::request::{self, MOST_SIMULATIONS, Problem};
+use super::request::{self, Keep, MOST_SIMULATIONS, Problem};
 use super::result::{BandBuilder, MethodResult};
 use super::validation::Validation;
 use crate::grammar::{Fields, Reader, SymbolTable};
@@ -282,6 +282,7 @@ impl BoundingMethod for Chebyshev {
         // An output is no polynomial behind an event, whatever is to be expanded.
         if composes
             && is_full
+            && request.keep != Keep::WholeBox
             && let Some(result) = segments::of_degree(ensemble, &surrogate, &samples, validation, request.keep)?
         {
             return Ok(result);
@@ -320,7 +321,9 @@ fn adapted(
         OutputGoal { allowed: (allowed - time).max(TUNING.least_share * allowed), rows }
     };
     let mut goal = Goal { outputs: (0..ensemble.outputs()).map(of_output).collect(), budget: request.budget, spent };
-    if let Some(found) = segments::adapted(ensemble, &goal, validation, request.keep)? {
+    if request.keep != Keep::WholeBox
+        && let Some(found) = segments::adapted(ensemble, &goal, validation, request.keep)?
+    {
         return Ok(found);
     }
     let outputs = ensemble.outputs();

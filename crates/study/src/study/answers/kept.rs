@@ -163,6 +163,11 @@ impl Kept {
         ReducedValues::of(asked.map(Placed::margins).collect::<Option<Vec<_>>>()?, count).filter(|_| count > 0)
     }
 
+    /// Whether equations of motion switch.
+    pub fn switches(&self) -> bool {
+        self.parts.iter().any(|placed| placed.part.simulator.switches().is_some())
+    }
+
     /// How many outputs there are: the model's, and what an analysis adds.
     pub fn outputs(&self) -> usize {
         self.indices.len()

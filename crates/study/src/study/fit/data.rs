@@ -4,10 +4,12 @@
 //! model shows the output. An empty cell was not measured.
 
 use crate::grammar::unit::{Unit, number_and_unit};
-use crate::model::{Description, Output};
+use crate::model::{Description, Output, Simulation, Stepping};
 use crate::syntax::suggest;
 use crate::syntax::table::{Cell, Line, Table};
 use crate::syntax::{Code, Coded};
+
+use super::tuning::TUNING;
 
 /// (√5 − 1)/2
 const GOLDEN: f64 = 0.618_033_988_749_894_8;
@@ -92,6 +94,33 @@ impl Measurements {
         indices.sort_unstable();
         indices.dedup();
         Self { values: indices.into_iter().map(|index| self.values[index].clone()).collect() }
+    }
+
+    /// The time between rows of which one is at each measured time: the model's, or the longest, in whole steps; `None`
+    /// where there is none, or rows would be too many.
+    pub(super) fn row_step(&self, simulation: &Simulation) -> Option<f64> {
+        let Simulation { duration, stepping, output_step, .. } = simulation;
+        let times = || self.values.iter().map(|own| own.time).filter(|time| *time > 0.0 && time <= duration);
+        let are_whole = |ratio: f64| (ratio - ratio.round()).abs() < TUNING.rounded_time && ratio > 0.5;
+        if times().all(|time| are_whole(time / output_step)) {
+            return Some(*output_step);
+        }
+        let least = duration / TUNING.most_rows;
+        // Euclid's algorithm, up to a remainder that is rounding beside the least step.
+        let common = |mut a: f64, mut b: f64| {
+            while b > TUNING.rounded_time * least {
+                (a, b) = (b, (a - b * (a / b).round()).abs());
+            }
+            a
+        };
+        let step = times().reduce(common).filter(|step| *step >= least)?;
+        let last = times().fold(0.0, f64::max);
+        let step = last / (last / step).round();
+        let are_steps = match stepping {
+            Stepping::Fixed(fixed) => are_whole(step / fixed),
+            Stepping::Tolerance(_) => true,
+        };
+        (are_steps && times().all(|time| are_whole(time / step))).then_some(step)
     }
 
     /// Reads a table for a model.

@@ -114,7 +114,7 @@ impl Local {
             let found = Self::fitted(&surrogate, &readings.at(&nodes), &held_out, &direct, degree);
             let Self { errors: between, .. } = &found;
             let shares = between.iter().zip(&measurements.values).zip(&own);
-            let shares = shares.filter(|(_, own)| own.is_finite());
+            let shares = shares.filter(|((error, _), own)| own.is_finite() && !error.is_infinite());
             let shares = shares.map(|((error, row), own)| error / row.noise.max(TUNING.fine_beside_error / fine * own));
             let coarseness =
                 shares.fold(0.0, |most: f64, own| if own.is_nan() { f64::INFINITY } else { most.max(own) });

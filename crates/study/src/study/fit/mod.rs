@@ -63,6 +63,10 @@ pub fn fit(description: &Description, measurements: &Measurements, options: &Opt
     model.reduced.clear();
     model.requirements.clear();
     model.statistics.asked = false;
+    // Rows at the measured times need no interpolation.
+    if let Some(step) = measurements.row_step(&model.simulation) {
+        model.simulation.output_step = step;
+    }
     let pool = pool(options.threads);
     pool.map_err(RunError::from)?.install(|| fitted(&model, measurements, options))
 }
@@ -210,7 +214,7 @@ fn polished(
     Ok(best)
 }
 
-/// Values of measured rows at one point; NaN where the motion ends before.
+/// Values of measured rows at one point; NaN where the motion ends before, and between rows beside an impact.
 fn simulated(
     model: &Description,
     measurements: &Measurements,
@@ -227,10 +231,17 @@ fn simulated(
             Ok::<(), FitError>(())
         })?;
         done.ok_or(FitError::Interrupted)?;
-        let width = trajectories.outputs.len();
+        let (times, width) = (&trajectories.times, trajectories.outputs.len());
+        let switches = trajectories.studies.iter().any(|study| study.simulator.switches().is_some());
         let of = |row: &data::Measured| {
-            let Some(found) = Interpolation::new(&trajectories.times, row.time) else { return f64::NAN };
-            found.fine.iter().map(|(index, weight)| weight * values[index * width + row.output]).sum()
+            let Some(found) = Interpolation::new(times, row.time) else { return f64::NAN };
+            let sum = |weights: &[(usize, f64)]| -> f64 {
+                weights.iter().map(|(index, weight)| weight * values[index * width + row.output]).sum()
+            };
+            let value = sum(&found.fine);
+            let is_beside_impact = |side: &Vec<(usize, f64)>| (sum(side) - value).abs() > row.noise;
+            let is_unknown = switches && found.sides(times, row.time).iter().any(is_beside_impact);
+            if is_unknown { f64::NAN } else { value }
         };
         Ok(measurements.values.iter().map(of).collect())
     })

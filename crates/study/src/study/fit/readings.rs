@@ -40,13 +40,16 @@ struct Reading {
     output: usize,
     /// `None` where the motion ends before.
     interpolation: Option<Interpolation>,
+    /// Interpolations from either side, of a model that switches: beside an impact they differ by more than the noise.
+    sides: Vec<Vec<(usize, f64)>>,
+    noise: f64,
 }
 
 /// Values at samples.
 pub struct ReadValues {
     /// By measured row, then sample.
     pub values: Vec<Vec<f64>>,
-    /// By measured row: the largest difference of both interpolations in time.
+    /// By measured row: the largest difference of interpolations in time; infinite beside an impact.
     pub interpolation: Vec<f64>,
 }
 
@@ -91,9 +94,11 @@ impl SurrogateRun {
     /// Where an output's equations have no finite values at the start.
     pub fn readings(&self, measurements: &Measurements) -> Result<Readings<'_>, FitError> {
         let evaluator = self.kept.evaluator().map_err(|error| FitError::Run(error.into()))?;
-        let reading = |own: &Measured| Reading {
-            output: own.output,
-            interpolation: Interpolation::new(self.kept.times(), own.time),
+        let (times, switches) = (self.kept.times(), self.kept.switches());
+        let reading = |own: &Measured| {
+            let interpolation = Interpolation::new(times, own.time);
+            let sides = interpolation.iter().filter(|_| switches).flat_map(|found| found.sides(times, own.time));
+            Reading { output: own.output, sides: sides.collect(), interpolation, noise: own.noise }
         };
         let rows = measurements.values.iter().map(reading).collect();
         Ok(Readings { kept: &self.kept, evaluator, rows, strict: false })
@@ -139,7 +144,7 @@ impl Readings<'_> {
         let mut wanted: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
         for reading in &self.rows {
             let fine = reading.interpolation.iter().flat_map(|own| &own.fine);
-            for &(row, _) in fine {
+            for &(row, _) in fine.chain(reading.sides.iter().flatten()) {
                 let outputs = wanted.entry(row).or_default();
                 if !outputs.contains(&reading.output) {
                     outputs.push(reading.output);
@@ -164,14 +169,13 @@ impl Readings<'_> {
             None => (vec![f64::NAN; samples.len()], f64::INFINITY),
             Some(own) => {
                 let fine = sum(&own.fine, reading.output);
-                let error = match own.coarse.is_empty() {
-                    true => 0.0,
-                    false => {
-                        let coarse = sum(&own.coarse, reading.output);
-                        fine.iter().zip(coarse).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
-                    }
+                let apart = |others: &Vec<(usize, f64)>| {
+                    let others = sum(others, reading.output);
+                    fine.iter().zip(others).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
                 };
-                (fine, error)
+                let error = if own.coarse.is_empty() { 0.0 } else { apart(&own.coarse) };
+                let beside_impact = reading.sides.iter().map(apart).any(|apart| apart > reading.noise);
+                (fine, if beside_impact { f64::INFINITY } else { error })
             }
         };
         let (values, interpolation) = self.rows.iter().map(of).unzip();

@@ -5,6 +5,11 @@ use symdiff::constants::tuning;
 tuning! {
     /// Parameters that agree with measured values.
     "study: fit" {
+        /// Most rows that are simulated so that one is at each measured time: between rows a motion is interpolated,
+        /// which no polynomial does across an impact.
+        most_rows: f64 = 5000.0, moves "parameters that are estimated";
+        /// Times are whole multiples of a step up to this share of it.
+        rounded_time: f64 = 1e-6, moves "parameters that are estimated";
         /// Starts in the box, beside its middle.
         starts: usize = 8, moves "parameters that are estimated";
         /// Most steps from each start on a surrogate.

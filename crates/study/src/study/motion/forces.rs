@@ -6,12 +6,12 @@
 use symdiff::Formula;
 
 use super::super::drawing::asked::{AskedVector, DrawingOutputs, DrawingValues};
+use super::MotionOptions;
 use super::rows::MotionRows;
 use super::tuning::TUNING;
 use crate::grammar::{PointRef, Sensor};
 use crate::model::{Analysis, Description};
 use crate::results::MovingForce;
-use crate::simulate::Interruption;
 use crate::study::RunError;
 
 /// A force that is asked.
@@ -23,41 +23,49 @@ struct AskedForce {
 }
 
 /// The forces at some times of the nominal motion; none where they cannot be computed.
-pub(super) fn forces(description: &Description, times: &[f64], interruption: Interruption<'_>) -> Vec<MovingForce> {
+pub(super) fn forces(description: &Description, times: &[f64], options: MotionOptions) -> Vec<MovingForce> {
     // Without forces there is no motion that could show them, and not every motion is of forces.
     let has_forces = matches!(description.analysis, Analysis::Motion | Analysis::Statics);
     if !has_forces {
         return Vec::new();
     }
-    simulated(description, times, interruption).unwrap_or_default()
+    simulated(description, times, options).unwrap_or_default()
 }
 
-fn simulated(
-    description: &Description,
-    times: &[f64],
-    interruption: Interruption<'_>,
-) -> Result<Vec<MovingForce>, RunError> {
+fn simulated(description: &Description, times: &[f64], options: MotionOptions) -> Result<Vec<MovingForce>, RunError> {
     let mut asked = DrawingOutputs::default();
     let wanted = ask(description, &mut asked);
     if wanted.is_empty() {
         return Ok(Vec::new());
     }
     let numbers = asked.0.len();
-    let asking = MotionRows::asking(description, asked, interruption)?;
+    let mut asking = MotionRows::asking(description, asked, options.interruption)?;
+    asking.between_events = options.between_events;
     let mut rows: Vec<DrawingValues> = Vec::new();
     let nominal = [asking.domain.nominal.clone()];
     let (found, _) = asking.of_samples(description, &nominal, numbers, |_, _, values| rows.push(values))?;
-    // Both runs have rows at the same times, this one perhaps more of them.
-    let row = |time: f64| found.partition_point(|&known| known < time - 1e-9 * time.abs()).min(found.len() - 1);
     if found.is_empty() {
         return Ok(Vec::new());
     }
+    // Both runs have rows at the same times, this one perhaps more of them; or fewer, where only other samples meet
+    // events.
+    let row = |time: f64| {
+        let after = found.partition_point(|&known| known < time - 1e-9 * time.abs()).min(found.len() - 1);
+        let before = if found[after] > time + 1e-9 * time.abs() { after.saturating_sub(1) } else { after };
+        let share = if after > before { (time - found[before]) / (found[after] - found[before]) } else { 0.0 };
+        (before, after, share)
+    };
     let along = |wanted: &AskedForce| -> Vec<f64> {
         let at = |values: &DrawingValues| {
             let [place, force] = [wanted.at, wanted.force].map(|asked| values.vector(asked));
             [place.x, place.y, place.z, force.x, force.y, force.z]
         };
-        times.iter().flat_map(|&time| at(&rows[row(time)])).collect()
+        let of_time = |&time: &f64| {
+            let (before, after, share) = row(time);
+            let (from, to) = (at(&rows[before]), at(&rows[after]));
+            std::array::from_fn::<f64, 6, _>(|number| from[number] + share * (to[number] - from[number]))
+        };
+        times.iter().flat_map(of_time).collect()
     };
     let all = wanted.into_iter().map(|wanted| {
         let values = along(&wanted);
@@ -113,11 +121,14 @@ fn place(description: &Description, of: PointRef, spatial: bool) -> [Formula; 3]
 mod tests {
     use super::*;
     use crate::model;
+    use crate::simulate::Interruption;
 
     fn forces_of(text: &str) -> Vec<MovingForce> {
         let description =
             model::load_str("forces.yaml", text, &[]).unwrap_or_else(|diagnostics| panic!("{diagnostics}"));
-        forces(&description, &[0.0, 0.005], Interruption::default())
+        let options =
+            MotionOptions { threads: None, size: 0, interruption: Interruption::default(), between_events: false };
+        forces(&description, &[0.0, 0.005], options)
     }
 
     #[test]

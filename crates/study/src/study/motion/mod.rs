@@ -18,8 +18,10 @@ use super::drawing::{drawn, extent, has_ground};
 use super::{RunError, caught, pool};
 use crate::model::Description;
 use crate::numerics::{Sample, SparseWork, SurrogateWork};
-use crate::results::{Drawing, FunctionWitness, Motion, MotionPolynomials, MovingSample, ParameterSummary, Poses};
-use crate::simulate::Interruption;
+use crate::results::{
+    Drawing, FunctionWitness, Motion, MotionPolynomials, MovingSample, ParameterSummary, Poses, Summary,
+};
+use crate::simulate::{Integration, Interruption};
 pub use by_hand::{Grip, Hand, Held};
 pub use movable::Movable;
 use rows::MotionRows;
@@ -40,6 +42,13 @@ pub struct MotionOptions<'a> {
     pub size: usize,
     /// Asked now and then whether to end.
     pub interruption: Interruption<'a>,
+    /// Whether motions are cut at events, as [`is_between_events`] tells of a run.
+    pub between_events: bool,
+}
+
+/// Whether the motions of a run were cut at events.
+pub fn is_between_events(summary: &Summary) -> bool {
+    summary.integration == Integration::Segments.name()
 }
 
 /// The motion of all bodies for a report, with those under the worst functions of excitations; or why there is none.
@@ -72,7 +81,8 @@ fn motion(description: &Description, options: MotionOptions) -> Result<Motion, R
         // Its ground is drawn when it is known what the motion passes.
         let drawing = drawn(description, None)?;
         let mut posed = Posed::compile(description, options.interruption)?;
-        posed.simulate(description, drawing, options.size)
+        posed.rows.between_events = options.between_events;
+        posed.simulate(description, drawing, options)
     })
 }
 
@@ -126,7 +136,12 @@ impl<'a> Posed<'a> {
         parameters.collect()
     }
 
-    fn simulate(&mut self, description: &Description, drawing: Drawing, size: usize) -> Result<Motion, RunError> {
+    fn simulate(
+        &mut self,
+        description: &Description,
+        drawing: Drawing,
+        options: MotionOptions,
+    ) -> Result<Motion, RunError> {
         let samples = Samples::of(&self.rows.domain);
         let wanted: Vec<Sample> =
             [&self.rows.domain.nominal].into_iter().chain(&samples.shown).chain(&samples.nodes).cloned().collect();
@@ -139,7 +154,8 @@ impl<'a> Posed<'a> {
 
         let lines = self.lines();
         let terms = surrogate.map_or(0, |surrogate| surrogate.basis().len());
-        let most = (size / (lines * (2 + shown.len() + terms)).max(1)).clamp(TUNING.fewest_poses, TUNING.most_poses);
+        let most =
+            (options.size / (lines * (2 + shown.len() + terms)).max(1)).clamp(TUNING.fewest_poses, TUNING.most_poses);
         let weights = self.weights(&recorded[0].points, &drawing);
         let looked_at: Vec<&[f64]> = [0].iter().chain(&shown).map(|&sample| recorded[sample].rows.as_slice()).collect();
         let thinning = Thinning { samples: looked_at, weights: &weights };
@@ -192,7 +208,7 @@ impl<'a> Posed<'a> {
             samples,
             worst: Vec::new(),
             polynomials,
-            forces: forces::forces(description, &found_times, self.rows.interruption),
+            forces: forces::forces(description, &found_times, options),
             drawing: self.with_ground(description, drawing, &recorded[0].rows)?,
         })
     }
@@ -295,7 +311,12 @@ mod tests {
     fn polynomials_meet_samples_that_they_were_not_made_from() {
         let motion = motion(
             &four_bar(),
-            MotionOptions { threads: Some(1), size: 300_000, interruption: Interruption::default() },
+            MotionOptions {
+                threads: Some(1),
+                size: 300_000,
+                interruption: Interruption::default(),
+                between_events: false,
+            },
         )
         .unwrap();
         let polynomials = motion.polynomials.as_ref().unwrap();
@@ -305,7 +326,12 @@ mod tests {
         assert!(motion.between < 1e-3, "{}", motion.between);
         let several = super::motion(
             &four_bar(),
-            MotionOptions { threads: Some(2), size: 300_000, interruption: Interruption::default() },
+            MotionOptions {
+                threads: Some(2),
+                size: 300_000,
+                interruption: Interruption::default(),
+                between_events: false,
+            },
         )
         .unwrap();
         assert_eq!(several.nominal.bodies, motion.nominal.bodies);
@@ -314,9 +340,11 @@ mod tests {
 
     #[test]
     fn a_small_size_leaves_few_poses_and_says_how_far_off_they_are() {
-        let motion =
-            motion(&four_bar(), MotionOptions { threads: Some(1), size: 1, interruption: Interruption::default() })
-                .unwrap();
+        let motion = motion(
+            &four_bar(),
+            MotionOptions { threads: Some(1), size: 1, interruption: Interruption::default(), between_events: false },
+        )
+        .unwrap();
         assert_eq!((motion.times.len(), motion.rows), (TUNING.fewest_poses, 201));
         assert!(motion.between > 1e-3, "{}", motion.between);
     }

@@ -12,8 +12,8 @@ use crate::assemble::Questions;
 use crate::model::{Analysis, Description, ModesRequest, Stepping};
 use crate::numerics::{ParameterBox, Sample};
 use crate::simulate::{
-    Controller, EnsembleRun, Integration, Integrator, Interruption, Observed, Schedule, SimulationError, Simulator,
-    Steps, TimeFunctions, schedule_for_tolerance,
+    Controller, Integration, Interruption, Observed, Schedule, SimulationError, Simulator, Steps, TimeFunctions,
+    integrator, schedule_for_tolerance, segments_of,
 };
 
 /// A model that is asked for something in place of its outputs.
@@ -21,6 +21,8 @@ pub(in crate::study) struct MotionRows<'a> {
     pub(in crate::study) simulator: Simulator,
     pub(super) domain: ParameterBox,
     pub(super) interruption: Interruption<'a>,
+    /// Whether motions are cut at events where they can be.
+    pub(super) between_events: bool,
 }
 
 /// Simulated samples.
@@ -36,6 +38,11 @@ struct Running<'a> {
 /// How many rows one stands for that is looked at, of so many numbers.
 fn every(numbers: usize) -> usize {
     numbers.div_ceil(TUNING.most_numbers).max(1)
+}
+
+/// The nominal sample and corners of the box, which come first.
+fn controlling(samples: &[Sample]) -> &[Sample] {
+    &samples[..samples.len().min(1 + TUNING.controlling)]
 }
 
 impl<'a> MotionRows<'a> {
@@ -56,7 +63,7 @@ impl<'a> MotionRows<'a> {
             upper: parameters.iter().map(|parameter| parameter.upper).collect(),
             zones: Vec::new(),
         };
-        Ok(Self { simulator, domain, interruption })
+        Ok(Self { simulator, domain, interruption, between_events: false })
     }
 
     /// Times of the rows that are looked at, and where samples stop. What is asked is given to `keep`: the sample,
@@ -95,7 +102,7 @@ impl<'a> MotionRows<'a> {
         let schedule = &plan.schedule;
         let every = every(schedule.rows * numbers * samples.len());
         let mut times = Vec::new();
-        let mut run = EnsembleRun::start(&self.simulator, samples, schedule.first_step())?;
+        let mut run = integrator(&self.simulator, samples, schedule)?;
         run.heed(self.interruption);
         let outputs = self.simulator.system.outputs.len();
         let mut values = Vec::new();
@@ -165,8 +172,32 @@ impl<'a> MotionRows<'a> {
         Ok(times[..reached.min(times.len())].to_vec())
     }
 
-    /// The steps: the model's, or those that its tolerance asks for at the nominal sample and corners of the box.
+    /// Steps between the events that controlling samples meet, which each sample has at its own times; `None` where
+    /// they are not cut there up to the end. Rows are denser than those of the outputs by a power of two.
+    fn between_events(
+        &self,
+        description: &Description,
+        samples: &[Sample],
+    ) -> Result<Option<Schedule>, SimulationError> {
+        // Constraints that open later are not watched for.
+        if !self.between_events || !self.simulator.mobility.redundant.is_empty() {
+            return Ok(None);
+        }
+        let (duration, output_step) = (description.simulation.duration, description.simulation.output_step);
+        let found = segments_of(&self.simulator, &self.domain, controlling(samples), duration, TUNING.event_error)?;
+        let rows = Schedule::rows_of(duration, output_step);
+        let finer = (TUNING.rows_between_events / rows).max(1).ilog2();
+        let dense = output_step / f64::from(1 << finer);
+        let whole = found.filter(|segments| segments.horizon >= duration);
+        Ok(whole.map(|segments| Schedule::segmented(duration, dense, segments)))
+    }
+
+    /// The steps: those between events, the model's, or those that its tolerance asks for at the nominal sample and
+    /// corners of the box.
     fn plan(&self, description: &Description, samples: &[Sample]) -> Result<StepPlan, RunError> {
+        if let Some(schedule) = self.between_events(description, samples)? {
+            return Ok(StepPlan::fixed(schedule));
+        }
         let simulation = &description.simulation;
         let (duration, output_step) = (simulation.duration, simulation.output_step);
         let (schedule, controller) = match simulation.stepping {
@@ -175,10 +206,9 @@ impl<'a> MotionRows<'a> {
                 (Schedule::fixed(duration, step, output_step).taken(integration), None)
             }
             Stepping::Tolerance(tolerance) => {
-                let controlling = &samples[..samples.len().min(1 + TUNING.controlling)];
                 let found = schedule_for_tolerance(
                     &self.simulator,
-                    controlling,
+                    controlling(samples),
                     duration,
                     output_step,
                     tolerance,
@@ -190,5 +220,70 @@ impl<'a> MotionRows<'a> {
         let functions = TimeFunctions::of(&self.simulator, duration);
         let schedule = functions.map_or_else(|| schedule.clone(), |functions| functions.divided(&schedule).schedule);
         Ok(StepPlan { schedule, controller })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{MotionOptions, report_motion};
+    use super::*;
+    use crate::model;
+
+    /// A ball that bounces without loss; the floor's spring is as stiff as the sample says, the step too long for it.
+    const BALL: &str = "
+parameters: { K: { value: 1e5, unit: N/m, tolerance: 5% }, h0: { value: 1, unit: m, tolerance: 2% } }
+bodies: { ball: { mass: 1, coordinates: [y] } }
+effects:
+  weight: { gravity: { acceleration: [0, -9.81] } }
+  ground: { force: { on: ball, value: [0, \"K*max(-ball.y, 0)\"] } }
+initial: { ball.y: h0, ball.vy: 0 }
+outputs: { y: ball.y }
+simulation: { duration: 2, step: 1e-3, output_step: 0.02 }
+";
+
+    /// Height of a ball: parabolas, and in contact y = −(u/ω) sin ωτ − (g/ω²)(1 − cos ωτ).
+    fn height(stiffness: f64, from: f64, t: f64) -> f64 {
+        let (g, omega) = (9.81, stiffness.sqrt());
+        let speed = (2.0 * g * from).sqrt();
+        let fall = speed / g;
+        let contact = (std::f64::consts::PI + 2.0 * (g / (speed * omega)).atan()) / omega;
+        if t < fall {
+            return from - 0.5 * g * t * t;
+        }
+        let within = (t - fall) % (contact + 2.0 * fall);
+        if within < contact {
+            let (sin, cos) = (omega * within).sin_cos();
+            return -speed / omega * sin - g / (omega * omega) * (1.0 - cos);
+        }
+        let flight = within - contact;
+        speed * flight - 0.5 * g * flight * flight
+    }
+
+    #[test]
+    fn each_sample_bounces_at_its_own_times() {
+        let description = model::load_str("ball.yaml", BALL, &[]).unwrap_or_else(|errors| panic!("{errors}"));
+        let options = MotionOptions {
+            threads: Some(2),
+            size: 300_000,
+            interruption: Interruption::default(),
+            between_events: true,
+        };
+        let motion = report_motion(&description, &[], options).unwrap();
+        assert!(motion.samples.len() > 8 && motion.stopped == 0);
+        let named = |name: &str| motion.parameters.iter().position(|own| own.name == name).unwrap();
+        let (stiffness, from) = (named("K"), named("h0"));
+        let nominal: Vec<f64> = motion.parameters.iter().map(|own| own.nominal).collect();
+        let samples = motion.samples.iter().map(|sample| (&sample.values, &sample.poses));
+        for (values, poses) in samples.chain([(&nominal, &motion.nominal)]) {
+            let heights: Vec<f64> = poses.bodies.chunks_exact(3).map(|pose| pose[1]).collect();
+            for (&time, found) in motion.times.iter().zip(&heights) {
+                let own = height(values[stiffness], values[from], time);
+                assert!((found - own).abs() < 1e-6, "{values:?} at {time} s: {found} m, not {own} m");
+            }
+            // Contacts last for 10 ms, rows of the outputs are 20 ms apart: those of the motion are denser.
+            let deepest = (2.0 * 9.81 * values[from] / values[stiffness]).sqrt();
+            let least = heights.iter().copied().fold(0.0, f64::min);
+            assert!(least < 2e-3 - deepest, "{values:?}: {least} m, not {} m", -deepest);
+        }
     }
 }

@@ -34,6 +34,10 @@ tuning! {
         /// Numbers that rows and samples may come to in memory; of a longer simulation every second, third … row is
         /// looked at.
         most_numbers: usize = 1 << 24, moves "motions in reports";
+        /// Error of a step between events, as a share of how far the motion has gone.
+        event_error: f64 = 1e-8, moves "motions in reports";
+        /// Rows of a motion that is cut at events, about: it turns within a contact, between the rows of the outputs.
+        rows_between_events: usize = 2048, moves "motions in reports";
         /// Rows that are simulated at a time.
         rows_at_once: usize = 64, moves "time only";
         /// Controlling samples of the steps beside the nominal one.

@@ -16,6 +16,7 @@ pub(crate) mod tuning;
 mod zones;
 
 use super::answers::Kept;
+use super::stepping::is_random;
 use super::{Options, RunError, reduced, subsystems};
 use crate::methods::{Keep, Method};
 use crate::model::{Description, ParameterValue};
@@ -38,11 +39,11 @@ pub(super) fn run(description: &Description, shown: usize, options: &Options) ->
     let derivatives = options.derivatives || shown > 0;
     let asked = Options { methods: options.methods.clone(), derivatives, ..*options };
     // Random motions meet more events than polynomials between them follow: they are not cut.
-    let keep = if realisations::is_random(description) { Keep::WholeBox } else { Keep::Statistics };
+    let keep = if is_random(description) { Keep::WholeBox } else { Keep::Statistics };
     let (mut bounds, mut summary, kept) = reduced::run(description, &asked, keep)?;
     let found = match &kept {
         _ if (options.interrupted)() => Err(INTERRUPTED.to_owned()),
-        _ if realisations::is_random(description) => motions::of_motions(description, shown, options),
+        _ if is_random(description) => motions::of_motions(description, shown, options),
         Some(kept) if has_numbers(description, kept) => of_run(description, shown, options, &bounds, kept),
         _ if options.skip_infeasible => Err("there is no surrogate over the whole box".to_owned()),
         _ => beside_bounds::of_motions(description, shown, options, &bounds),

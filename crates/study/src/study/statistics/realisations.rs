@@ -2,7 +2,7 @@
 
 use crate::elements::RandomFunction;
 use crate::methods::{Ensemble, Observed, Sampling, Until};
-use crate::model::{Analysis, Description, ParameterValue, Trajectory};
+use crate::model::{Description, ParameterValue, Trajectory};
 use crate::numerics::statistics::Normals;
 use crate::numerics::{SAFETY_OF_STEPS, Sample, step_error};
 use crate::reduce::Subsystem;
@@ -11,18 +11,13 @@ use crate::study::ensemble::{Progress, samples_of_part};
 use crate::study::problem::Study;
 use crate::study::reduced::{plan_reduction, values_of_samples};
 use crate::study::sample::steps_of_samples;
-use crate::study::stepping::{StepPlan, segmented_samples};
+use crate::study::stepping::StepPlan;
 
 use super::Laws;
 use super::tuning::TUNING;
 
 /// Seeds between which samples draw: ends whose products with the whole numbers of realisations are no whole numbers.
 const SEEDS: [f64; 2] = [0.211_324_865_405_187_13, 0.788_675_134_594_812_9];
-
-/// Whether motions are random.
-pub(super) fn is_random(description: &Description) -> bool {
-    description.analysis == Analysis::Motion && description.trajectories.iter().any(|own| own.random().is_some())
-}
 
 /// A model whose realisations are uncertain.
 pub(super) fn varied(description: &Description) -> Description {
@@ -78,16 +73,12 @@ pub(super) fn realisations(
     samples: &[Vec<f64>],
     progress: &Progress,
 ) -> Result<Option<Realisations>, SimulationError> {
-    let cut = if is_random(study.description) { None } else { segmented_samples(study)? };
-    let plan = match cut {
-        Some(schedule) => StepPlan::fixed(schedule),
-        None => steps_of_samples(study)?,
-    };
-    plan_reduction(study, &plan)?;
     let own = |sample: &Vec<f64>| subsystem.parameters.iter().map(|&number| sample[number]).collect();
     // Without parameters and seeds, one motion is that of all samples.
     let count = if study.domain.dimension() == 0 { 1 } else { samples.len() };
     let all: Vec<Sample> = samples[..count].iter().map(own).collect();
+    let (plan, _) = steps_of_samples(study, &all)?;
+    plan_reduction(study, &plan)?;
     let Some(direct) = simulated(study, &plan, &all, progress)? else { return Ok(None) };
     let few = &all[..count.min(TUNING.halved)];
     let Some(halved) = simulated(study, &plan.halved(), few, progress)? else { return Ok(None) };

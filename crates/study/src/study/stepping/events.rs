@@ -3,7 +3,7 @@
 use super::controlled::controlling_samples;
 use super::validated::may_extrapolate;
 use crate::methods::Keep;
-use crate::model::Stepping;
+use crate::model::{Analysis, Description, Stepping};
 use crate::numerics::{Sample, spread};
 use crate::results::{EventSummary, EventsFollowed, MethodSummary};
 use crate::simulate::{Boundary, Counters, Schedule, SimulationError, SwitchSearch, WordsEnd, segments_of};
@@ -25,11 +25,16 @@ pub fn segmented(study: &Study) -> Result<Option<Schedule>, SimulationError> {
 }
 
 /// Steps between the events that single samples meet, if there are any and these can be cut there up to the end.
-pub fn segmented_samples(study: &Study) -> Result<Option<Schedule>, SimulationError> {
-    if !(may_extrapolate(study) && opens_nothing(study)) {
+/// Samples show their events themselves if they are fewer than those that show the box's. A random motion meets more
+/// than are followed.
+pub fn segmented_samples(study: &Study, samples: &[Sample]) -> Result<Option<Schedule>, SimulationError> {
+    let may_be_cut = may_extrapolate(study) && opens_nothing(study) && !has_given_steps(study);
+    if !may_be_cut || is_random(study.description) {
         return Ok(None);
     }
-    let schedule = segments_of_samples(study, &event_samples(study))?;
+    let of_box = event_samples(study);
+    let shown = if samples.len() < of_box.len() { samples } else { &of_box };
+    let schedule = segments_of_samples(study, shown)?;
     Ok(schedule.filter(|schedule| lasts(study, schedule)))
 }
 
@@ -111,17 +116,23 @@ fn event_samples(study: &Study) -> Vec<Sample> {
 fn may_be_cut(study: &Study) -> bool {
     let problem = problem(study.description, &study.simulator);
     let methods = study.request.methods();
-    // What depends on nothing keeps the steps that it is given.
-    let within = match study.domain.dimension() {
-        0 => study.request.tolerance.is_some() || !problem.has_fixed_steps,
-        _ => methods.iter().all(|(_, method)| method.follows_events(&problem)),
-    };
     may_extrapolate(study)
-        && within
+        && (study.domain.dimension() == 0 || methods.iter().all(|(_, method)| method.follows_events(&problem)))
         && !methods.is_empty()
-        && study.request.keep != Keep::WholeBox
-        && study.stored.is_none()
+        && !(study.request.keep == Keep::WholeBox && is_random(study.description))
         && opens_nothing(study)
+        && !has_given_steps(study)
+}
+
+/// Whether a motion depends on nothing, and keeps the steps that it is given.
+fn has_given_steps(study: &Study) -> bool {
+    let is_fixed = matches!(study.description.simulation.stepping, Stepping::Fixed(_));
+    study.domain.dimension() == 0 && study.request.tolerance.is_none() && is_fixed
+}
+
+/// Whether motions are random: each has a seed.
+pub fn is_random(description: &Description) -> bool {
+    description.analysis == Analysis::Motion && description.trajectories.iter().any(|own| own.random().is_some())
 }
 
 /// Constraints that open later are not watched for.

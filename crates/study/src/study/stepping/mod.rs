@@ -18,7 +18,7 @@ mod validated;
 
 pub use balance::{Balanced, balance};
 pub use controlled::controlling_samples;
-pub use events::{events_followed, events_of_parts, segmented, segmented_nominal, segmented_samples};
+pub use events::{events_followed, events_of_parts, is_random, segmented, segmented_nominal, segmented_samples};
 pub use explicit::{decision, explicit_samples, explicit_steps, may_be_explicit, refused};
 pub use first::planned;
 pub use plan::StepPlan;
