@@ -88,8 +88,9 @@ fn in_this_tree(
         return Ok(Err(why));
     }
     mechanism.guess_children(assembled)?;
-    let system = equations(mechanism)?;
-    Ok(Ok(system(builder.finish())))
+    let mut system = equations(mechanism)?(builder.finish());
+    system.formulation.closed_from = assembled.map(<[f64]>::to_vec);
+    Ok(Ok(system))
 }
 
 /// Whether joints close loops, in joint coordinates.
@@ -139,7 +140,7 @@ fn equations(mut m: Mechanism) -> Result<impl FnOnce(Graph) -> System + use<>, B
     m.scale_states(&balance.force, &start, description.simulation.duration, &mut coordinates);
     let joint = !m.tree.is_absolute();
     let cut = if joint { m.tree.closing(description) } else { Vec::new() };
-    let formulation = FormulationInfo { joint, why: "the model asks for them".to_owned(), cut };
+    let formulation = FormulationInfo { joint, why: "the model asks for them".to_owned(), cut, closed_from: None };
     let (analysis, modes) = (description.analysis, questions.modes.clone().into_owned());
     let is_derived = description.black_box.is_some() || questions.outputs.iter().any(|output| output.of_results);
     let declared_parameters = if is_derived { description.parameters.clone() } else { Vec::new() };

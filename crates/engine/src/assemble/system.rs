@@ -87,7 +87,7 @@ pub struct System {
 }
 
 /// By which coordinates a motion is described.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct FormulationInfo {
     /// Whether by those of joints, as far as that goes.
     pub joint: bool,
@@ -95,6 +95,8 @@ pub struct FormulationInfo {
     pub why: String,
     /// The joints that close loops of the trees, by number; none in absolute coordinates.
     pub cut: Vec<usize>,
+    /// The assembled start in absolute coordinates from which loops are closed; `None` where it is not known.
+    pub closed_from: Option<Vec<f64>>,
 }
 
 impl FormulationInfo {

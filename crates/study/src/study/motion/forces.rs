@@ -11,8 +11,7 @@ use super::tuning::TUNING;
 use crate::grammar::{PointRef, Sensor};
 use crate::model::{Analysis, Description};
 use crate::results::MovingForce;
-use crate::simulate::Interruption;
-use crate::study::RunError;
+use crate::simulate::{Interruption, Simulator};
 
 /// A force that is asked.
 struct AskedForce {
@@ -22,48 +21,51 @@ struct AskedForce {
     force: AskedVector,
 }
 
-/// The forces at some times of the nominal motion; none where they cannot be computed.
-pub(super) fn forces(description: &Description, times: &[f64], interruption: Interruption<'_>) -> Vec<MovingForce> {
-    // Without forces there is no motion that could show them, and not every motion is of forces.
-    let has_forces = matches!(description.analysis, Analysis::Motion | Analysis::Statics);
-    if !has_forces {
-        return Vec::new();
-    }
-    simulated(description, times, interruption).unwrap_or_default()
+/// A simulation of the nominal motion, of which forces are asked.
+pub(super) struct SimulatedForces {
+    asked: Vec<AskedForce>,
+    /// Of the rows, s.
+    times: Vec<f64>,
+    rows: Vec<DrawingValues>,
 }
 
-fn simulated(
-    description: &Description,
-    times: &[f64],
-    interruption: Interruption<'_>,
-) -> Result<Vec<MovingForce>, RunError> {
-    let mut asked = DrawingOutputs::default();
-    let wanted = ask(description, &mut asked);
-    if wanted.is_empty() {
-        return Ok(Vec::new());
+impl SimulatedForces {
+    /// Simulates a model whose program for other questions is known; `None` where forces cannot be computed, or
+    /// there are none.
+    pub fn of(description: &Description, known: &Simulator, interruption: Interruption<'_>) -> Option<Self> {
+        // Without forces there is no motion that could show them, and not every motion is of forces.
+        let has_forces = matches!(description.analysis, Analysis::Motion | Analysis::Statics);
+        let mut outputs = DrawingOutputs::default();
+        let asked = if has_forces { ask(description, &mut outputs) } else { Vec::new() };
+        if asked.is_empty() {
+            return None;
+        }
+        let numbers = outputs.0.len();
+        let asking = MotionRows::asking(description, outputs, Some(known), interruption).ok()?;
+        let mut rows: Vec<DrawingValues> = Vec::new();
+        let nominal = [asking.domain.nominal.clone()];
+        let (times, _) = asking.of_samples(description, &nominal, numbers, |_, _, values| rows.push(values)).ok()?;
+        (!times.is_empty()).then_some(Self { asked, times, rows })
     }
-    let numbers = asked.0.len();
-    let asking = MotionRows::asking(description, asked, interruption)?;
-    let mut rows: Vec<DrawingValues> = Vec::new();
-    let nominal = [asking.domain.nominal.clone()];
-    let (found, _) = asking.of_samples(description, &nominal, numbers, |_, _, values| rows.push(values))?;
-    // Both runs have rows at the same times, this one perhaps more of them.
-    let row = |time: f64| found.partition_point(|&known| known < time - 1e-9 * time.abs()).min(found.len() - 1);
-    if found.is_empty() {
-        return Ok(Vec::new());
-    }
-    let along = |wanted: &AskedForce| -> Vec<f64> {
-        let at = |values: &DrawingValues| {
-            let [place, force] = [wanted.at, wanted.force].map(|asked| values.vector(asked));
-            [place.x, place.y, place.z, force.x, force.y, force.z]
+
+    /// The forces at some times of the motion.
+    pub fn at(self, times: &[f64]) -> Vec<MovingForce> {
+        let Self { asked, times: found, rows } = self;
+        // Both runs have rows at the same times, this one perhaps more of them.
+        let row = |time: f64| found.partition_point(|&known| known < time - 1e-9 * time.abs()).min(found.len() - 1);
+        let along = |wanted: &AskedForce| -> Vec<f64> {
+            let at = |values: &DrawingValues| {
+                let [place, force] = [wanted.at, wanted.force].map(|asked| values.vector(asked));
+                [place.x, place.y, place.z, force.x, force.y, force.z]
+            };
+            times.iter().flat_map(|&time| at(&rows[row(time)])).collect()
         };
-        times.iter().flat_map(|&time| at(&rows[row(time)])).collect()
-    };
-    let all = wanted.into_iter().map(|wanted| {
-        let values = along(&wanted);
-        MovingForce { name: wanted.name, is_reaction: wanted.is_reaction, values }
-    });
-    Ok(all.filter(is_there).take(TUNING.most_arrows).collect())
+        let all = asked.into_iter().map(|wanted| {
+            let values = along(&wanted);
+            MovingForce { name: wanted.name, is_reaction: wanted.is_reaction, values }
+        });
+        all.filter(is_there).take(TUNING.most_arrows).collect()
+    }
 }
 
 /// Whether it acts at any time, and is a number at all of them.
@@ -112,12 +114,16 @@ fn place(description: &Description, of: PointRef, spatial: bool) -> [Formula; 3]
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::assemble::Questions;
     use crate::model;
+    use crate::study::formulation::compiled;
 
     fn forces_of(text: &str) -> Vec<MovingForce> {
         let description =
             model::load_str("forces.yaml", text, &[]).unwrap_or_else(|diagnostics| panic!("{diagnostics}"));
-        forces(&description, &[0.0, 0.005], Interruption::default())
+        let simulator = compiled(&Questions::of(&description)).unwrap();
+        let found = SimulatedForces::of(&description, &simulator, Interruption::default());
+        found.map_or_else(Vec::new, |found| found.at(&[0.0, 0.005]))
     }
 
     #[test]

@@ -21,6 +21,7 @@ use crate::numerics::{Sample, SparseWork, SurrogateWork};
 use crate::results::{Drawing, FunctionWitness, Motion, MotionPolynomials, MovingSample, ParameterSummary, Poses};
 use crate::simulate::Interruption;
 pub use by_hand::{Grip, Hand, Held};
+use forces::SimulatedForces;
 pub use movable::Movable;
 use rows::MotionRows;
 use samples::Samples;
@@ -69,10 +70,8 @@ pub fn report_motion(
 fn motion(description: &Description, options: MotionOptions) -> Result<Motion, RunError> {
     let pool = pool(options.threads)?;
     pool.install(|| {
-        // Its ground is drawn when it is known what the motion passes.
-        let drawing = drawn(description, None)?;
-        let mut posed = Posed::compile(description, options.interruption)?;
-        posed.simulate(description, drawing, options.size)
+        let posed = Posed::compile(description, options.interruption)?;
+        posed.simulate(description, options.size)
     })
 }
 
@@ -98,10 +97,15 @@ impl<'a> Posed<'a> {
         let bodies = description.bodies.iter().enumerate();
         let bodies: Vec<AskedBody> = bodies.map(|(index, body)| asked.body(description, index, body)).collect();
         Ok(Self {
-            rows: MotionRows::asking(description, asked, interruption)?,
+            rows: MotionRows::asking(description, asked, None, interruption)?,
             bodies,
             spatial: description.space.spatial,
         })
+    }
+
+    /// The drawing, with its ground from one place to another along x, m.
+    fn drawn(&self, description: &Description, along: Option<[f64; 2]>) -> Result<Drawing, RunError> {
+        drawn(description, along, Some(&self.rows.simulator))
     }
 
     fn per_body(&self) -> usize {
@@ -126,11 +130,19 @@ impl<'a> Posed<'a> {
         parameters.collect()
     }
 
-    fn simulate(&mut self, description: &Description, drawing: Drawing, size: usize) -> Result<Motion, RunError> {
+    fn simulate(&self, description: &Description, size: usize) -> Result<Motion, RunError> {
         let samples = Samples::of(&self.rows.domain);
         let wanted: Vec<Sample> =
             [&self.rows.domain.nominal].into_iter().chain(&samples.shown).chain(&samples.nodes).cloned().collect();
-        let (times, recorded) = self.record(description, &drawing, &wanted)?;
+        let poses = || {
+            // Its ground is drawn when it is known what the motion passes.
+            let drawing = self.drawn(description, None)?;
+            let (times, recorded) = self.record(description, &drawing, &wanted)?;
+            Ok::<_, RunError>((drawing, times, recorded))
+        };
+        let forces = || SimulatedForces::of(description, &self.rows.simulator, self.rows.interruption);
+        let (poses, forces) = rayon::join(poses, forces);
+        let (drawing, times, recorded) = poses?;
         let rows = times.len();
         let complete = |sample: &Recorded| sample.stopped.is_none_or(|stopped| stopped >= rows);
         let shown: Vec<usize> = (1..=samples.shown.len()).filter(|&sample| complete(&recorded[sample])).collect();
@@ -192,7 +204,7 @@ impl<'a> Posed<'a> {
             samples,
             worst: Vec::new(),
             polynomials,
-            forces: forces::forces(description, &found_times, self.rows.interruption),
+            forces: forces.map_or_else(Vec::new, |forces| forces.at(&found_times)),
             drawing: self.with_ground(description, drawing, &recorded[0].rows)?,
         })
     }
@@ -202,7 +214,7 @@ impl<'a> Posed<'a> {
         if !has_ground(description) {
             return Ok(drawing);
         }
-        drawn(description, Some(extent(rows.iter().copied().step_by(self.per_body()))))
+        self.drawn(description, Some(extent(rows.iter().copied().step_by(self.per_body()))))
     }
 
     /// How far a point of a body goes where a coordinate of its pose changes: 1 for positions, the body's reach for
