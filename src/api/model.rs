@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use super::{Axis, Error, Study, Sweep};
 use crate::model::{Description, Override, ParameterValue, Reading, read_rooted, read_str};
 use crate::results::{Explanation, Gradients, Verification};
-use crate::study::{self, Options};
+use crate::study::{self, Options, RunError};
 use crate::syntax::Diagnostics;
 
 /// A mechanism with its uncertain parameters and outputs, free of errors.
@@ -144,8 +144,8 @@ impl Model {
     /// `|study| study.chebyshev(3)`; `|study| study` takes the model's.
     ///
     /// # Errors
-    /// [`Error::Model`]: the model does not have a parameter, or a value does not fit it. A run that fails leaves its
-    /// point without results.
+    /// [`Error::Model`]: the model does not have a parameter, or a value does not fit it. [`Error::Run`]: a point is
+    /// costly, and that is not allowed. Another run that fails leaves its point without results.
     pub fn sweep(&self, axes: &[Axis], ask: impl Fn(Study<'static>) -> Study<'static>) -> Result<Sweep, Error> {
         let mut sweep = Sweep::new(self.name(), axes);
         for values in Axis::combinations(axes) {
@@ -156,7 +156,7 @@ impl Model {
             // A combination without a motion leaves the others.
             let summary = match ask(model.study()).run() {
                 Ok(result) => Some(result.summary().clone()),
-                Err(Error::Run(_)) => None,
+                Err(Error::Run(error)) if !matches!(error, RunError::Costly(_) | RunError::Memory(_)) => None,
                 Err(error) => return Err(error),
             };
             sweep.add(values, summary);

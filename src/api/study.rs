@@ -18,7 +18,7 @@ pub struct Study<'a> {
 
 impl<'a> Study<'a> {
     pub(super) fn new(description: Description) -> Self {
-        Self { description, options: Options::default(), chosen: false }
+        Self { description, options: Options { costly: false, ..Options::default() }, chosen: false }
     }
 
     fn choose(&mut self) -> &mut BoundsRequest {
@@ -124,7 +124,8 @@ impl<'a> Study<'a> {
         self
     }
 
-    /// Runs also what takes more than 20 000 simulations or about a minute.
+    /// Runs also what takes more than 20 000 simulations or about a minute, which is refused otherwise
+    /// ([`Error::Run`] with the code `E1003`), and lets a run take much longer than was estimated.
     #[must_use]
     pub fn allow_costly(mut self) -> Self {
         self.options.costly = true;
@@ -209,8 +210,8 @@ impl<'a> Study<'a> {
     /// see [`StudyResult::failure`].
     ///
     /// # Errors
-    /// [`Error::Run`]: the mechanism cannot be built, assembled or stepped at all, or a method would need too many
-    /// simulations.
+    /// [`Error::Run`]: the mechanism cannot be built, assembled or stepped at all, a method would need too many
+    /// simulations, or the study is costly and [`allow_costly`](Self::allow_costly) was not called.
     pub fn run(self) -> Result<StudyResult, Error> {
         let (bounds, summary) = run(&self.description, self.options)?;
         Ok(StudyResult::new(bounds, summary))

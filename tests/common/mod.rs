@@ -71,7 +71,7 @@ pub fn model_of(text: &str) -> Model {
 /// A study of a model from text, as users of the library ask for one.
 #[track_caller]
 pub fn study_of(text: &str) -> Study<'static> {
-    model_of(text).study()
+    model_of(text).study().allow_costly()
 }
 
 /// Bounds and summary of a study that can be run, whether or not it reaches the end.

@@ -129,7 +129,7 @@ pub fn shares(seed: u64, draws: u64) -> Tally {
     let mut tally = Tally::default();
     for number in 0..draws {
         let Share { yaml, fails } = share(&mut Random::new(seed, number));
-        let result = Model::from_yaml_str("share", &yaml).unwrap().study().run();
+        let result = Model::from_yaml_str("share", &yaml).unwrap().study().allow_costly().run();
         let result = result.unwrap_or_else(|error| panic!("draw {number}: {error}\n{yaml}"));
         let statistics = &result.summary().statistics.as_ref().expect("the model asks for them").summary;
         let stated = statistics.together.as_ref().or(statistics.requirements.first());

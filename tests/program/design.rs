@@ -131,3 +131,26 @@ fn a_model_without_a_design_is_told_what_it_lacks() {
     let (_, error) = place(&model).run("design plate.yaml -o out", 2);
     assert!(error.contains("the model has no `design`"), "{error}");
 }
+
+/// Of sixteen parameters no grid is possible. The worst case of both requirements has all of the fifteen at one end:
+/// (20 − s² − 15 · 1.01²)/20 and (s + 15 · 0.99 − 16.5)/16.5 are the same at the best s.
+#[test]
+fn many_parameters_have_a_design() {
+    let all = || (0..15).map(|number| format!("a{number}"));
+    let parameters: String = all().map(|name| format!("  {name}: {{ value: 1 m, tolerance: 1% }}\n")).collect();
+    let products: Vec<String> = (0..15).map(|number| format!("a{number}*a{}", (number + 1) % 15)).collect();
+    let model = format!(
+        "parameters:\n  s: 2 m\n{parameters}outputs: {{ area: s*s + {}, length: s + {} }}\n\
+         requirements: {{ small: {{ output: area, max: 20 m^2 }}, long: {{ output: length, min: 16.5 m }} }}\n\
+         design: {{ s: 1 to 4 m }}\nobjective: margin\n",
+        products.join(" + "),
+        all().collect::<Vec<String>>().join(" + ")
+    );
+    let (json, _) = place(&model).run("design plate.yaml -o out --format json --quiet", 0);
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    let best = &json["optima"][0];
+    let half = 20.0 / 16.5 / 2.0;
+    let s = -half + f64::sqrt(half * half + 20.0 - 15.0 * 1.01 * 1.01 + 20.0 * 1.65 / 16.5);
+    let near = |found: &serde_json::Value, wanted: f64| (found.as_f64().unwrap() - wanted).abs() < 1e-3 * wanted;
+    assert!(near(&best["values"][0], s) && near(&best["worst"], (s - 1.65) / 16.5), "{s} {best}");
+}

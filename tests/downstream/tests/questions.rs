@@ -1,7 +1,7 @@
 //! Every question of the command line, asked from Rust.
 
 use mbint::results::{Criterion, Verdict};
-use mbint::{Axis, Error, Method, Model};
+use mbint::{Axis, Error, Method, Model, Study};
 
 /// A gap c − a − 2b of 1 mm, whose normal parts add to σ² = (0.1² + 0.4² + 0.1²)/9 mm².
 const STACK: &str = "
@@ -75,6 +75,20 @@ fn the_nominal_motion_alone_has_no_bands() {
     // A method that is chosen afterwards is run.
     let result = stack().study().nominal().chebyshev(1).run().unwrap();
     assert!(result.output("gap").unwrap().band(Method::Chebyshev).is_some());
+}
+
+#[test]
+fn a_costly_study_begins_only_where_it_is_allowed() {
+    // 30³ simulations.
+    let scan = |study: Study<'static>| study.nominal().scan(30).interrupted(&|| true);
+    let error = scan(stack().study()).run().unwrap_err();
+    assert!(matches!(error, Error::Run(_)) && error.code() == Some("E1003"), "{error}");
+    assert!(error.to_string().contains("allow_costly"), "{error}");
+    scan(stack().study().allow_costly()).run().unwrap();
+    // A sweep does not pass over it as over a mechanism that cannot be assembled.
+    let axis = Axis::new("a", &[30.0, 30.1]).with("mm ± 0.1 mm");
+    let error = stack().sweep(&[axis], scan).err().unwrap();
+    assert_eq!(error.code(), Some("E1003"), "{error}");
 }
 
 #[test]

@@ -9,13 +9,14 @@ use super::acting::Acting;
 use super::applied_forces::AppliedForces;
 use super::constraints::Constraints;
 use super::cuts::{cuts_of_several_axes, other_cuts};
+use super::formulation::FormulationInfo;
 use super::inputs::MechanismInput;
 use super::links::links_of;
 use super::mechanism::Mechanism;
 use super::powers::PowerBalance;
 use super::questions::Questions;
 use super::recursion;
-use super::system::{ChildLink, CoordinateInfo, EffectInfo, FormulationInfo, Nearest, Omission, Overlap, System};
+use super::system::{ChildLink, CoordinateInfo, EffectInfo, Nearest, Omission, Overlap, System};
 use super::tree::Tree;
 use crate::assemble::tuning::TUNING;
 use crate::grammar::Sensor;
@@ -88,8 +89,9 @@ fn in_this_tree(
         return Ok(Err(why));
     }
     mechanism.guess_children(assembled)?;
-    let system = equations(mechanism)?;
-    Ok(Ok(system(builder.finish())))
+    let mut system = equations(mechanism)?(builder.finish());
+    system.formulation.closed_from = assembled.map(<[f64]>::to_vec);
+    Ok(Ok(system))
 }
 
 /// Whether joints close loops, in joint coordinates.
@@ -139,7 +141,7 @@ fn equations(mut m: Mechanism) -> Result<impl FnOnce(Graph) -> System + use<>, B
     m.scale_states(&balance.force, &start, description.simulation.duration, &mut coordinates);
     let joint = !m.tree.is_absolute();
     let cut = if joint { m.tree.closing(description) } else { Vec::new() };
-    let formulation = FormulationInfo { joint, why: "the model asks for them".to_owned(), cut };
+    let formulation = FormulationInfo { joint, why: "the model asks for them".to_owned(), cut, closed_from: None };
     let (analysis, modes) = (description.analysis, questions.modes.clone().into_owned());
     let is_derived = description.black_box.is_some() || questions.outputs.iter().any(|output| output.of_results);
     let declared_parameters = if is_derived { description.parameters.clone() } else { Vec::new() };

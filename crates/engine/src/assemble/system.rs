@@ -3,6 +3,7 @@
 
 use std::sync::Arc;
 
+use super::formulation::FormulationInfo;
 use super::inputs::{InputInfo, RandomInput};
 use super::powers::PowerBalance;
 use symdiff::{Expr, Formula, Graph};
@@ -84,24 +85,6 @@ pub struct System {
     pub space: Space,
     /// By which coordinates, and why.
     pub formulation: FormulationInfo,
-}
-
-/// By which coordinates a motion is described.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct FormulationInfo {
-    /// Whether by those of joints, as far as that goes.
-    pub joint: bool,
-    /// For people.
-    pub why: String,
-    /// The joints that close loops of the trees, by number; none in absolute coordinates.
-    pub cut: Vec<usize>,
-}
-
-impl FormulationInfo {
-    /// `absolute` or `joint`.
-    pub fn name(&self) -> &'static str {
-        if self.joint { "joint" } else { "absolute" }
-    }
 }
 
 /// What an effect came to.

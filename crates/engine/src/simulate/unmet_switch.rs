@@ -19,7 +19,7 @@ use super::simulator::Simulator;
 use super::step::Counters;
 use super::tuning::TUNING;
 use crate::compile::{SwitchProgram, Tapes};
-use crate::numerics::{Extent, ParameterBox, SparseWork, Surrogate, SurrogateWork, extremes, spread};
+use crate::numerics::{Extent, Lattices, ParameterBox, SparseWork, Surrogate, SurrogateWork, extremes, spread};
 
 /// How far a switch went below and above zero since the row before.
 type Depths = [f64; 2];
@@ -281,7 +281,8 @@ impl Between<'_> {
         }
         let closer: Vec<usize> = near.iter().map(|&(index, _)| switches[index]).collect();
         let least: Vec<f64> = near.iter().map(|(_, size)| TUNING.switch_zero * size).collect();
-        let found = extremes(&intervals, &least, |points| self.values(points, times, motions, &closer));
+        let found =
+            extremes(&Lattices::default(), &intervals, &least, |points| self.values(points, times, motions, &closer));
         let suspect = |(&(index, size), found): (&(usize, f64), &Extent)| {
             let (switch, side) = one_sided[index];
             let beyond = if side == 0 { -found.range.lower } else { found.range.upper };

@@ -92,17 +92,19 @@ impl Expansion<'_> {
 
     /// Every output as it follows from the motion at some ξ: 2n lines of points.
     pub fn close<P: AsRef<[f64]>>(&self, points: &[P], motion: Vec<f64>) -> Vec<f64> {
-        let at = |parameter: usize, point: &P| {
-            let xi = point.as_ref()[parameter];
-            // Coordinates go on beyond the box, and so do parameters: with those of its end, outputs had a kink.
-            match xi.abs() <= 1.0 + TUNING.beyond_box {
-                true => self.domain.value(parameter, xi),
-                false => self.domain.midpoint(parameter) + self.domain.half_width(parameter) * xi,
-            }
-        };
-        let parameters = (0..self.domain.dimension())
-            .flat_map(|parameter| points.iter().map(move |point| at(parameter, point)))
-            .collect();
+        let k = self.domain.dimension();
+        let mut parameters = Vec::with_capacity(k * points.len());
+        for parameter in 0..k {
+            let at = |point: &P| {
+                let xi = point.as_ref()[parameter];
+                // Coordinates go on beyond the box, and so do parameters: with those of its end, outputs had a kink.
+                match xi.abs() <= 1.0 + TUNING.beyond_box {
+                    true => self.domain.value(parameter, xi),
+                    false => self.domain.midpoint(parameter) + self.domain.half_width(parameter) * xi,
+                }
+            };
+            parameters.extend(points.iter().map(at));
+        }
         self.closure.outputs(self.time, points.len(), parameters, motion)
     }
 }

@@ -165,6 +165,41 @@ pub struct Ensembles<'e> {
     pub odd: &'e dyn Ensemble,
     /// and their length over that of the schedule's.
     pub ratio: f64,
+    /// Whether all may be simulated at once: stored simulations are made one after the other.
+    pub at_once: bool,
+}
+
+/// Samples with halved steps, and some of them with steps at odds with both.
+struct Finer {
+    halved: ValidationTable,
+    simulated: Simulated,
+    odd: OddSteps,
+    of_odd: Effort,
+}
+
+impl Ensembles<'_> {
+    /// Both results.
+    fn both<A: Send, B: Send>(
+        &self,
+        first: impl FnOnce() -> Result<A, EnsembleError> + Send,
+        second: impl FnOnce() -> Result<B, EnsembleError> + Send,
+    ) -> Result<(A, B), EnsembleError> {
+        if self.at_once {
+            let (first, second) = rayon::join(first, second);
+            return Ok((first?, second?));
+        }
+        Ok((first()?, second()?))
+    }
+
+    /// Simulates samples with finer steps.
+    fn finer(&self, points: &[Vec<f64>], observed: Observed, whole: bool) -> Result<Finer, EnsembleError> {
+        let samples = self.direct.domain().samples(points);
+        let ((halved, simulated), (odd, of_odd)) = self.both(
+            || ValidationTable::of(self.halved, &samples, observed, whole),
+            || OddSteps::run(*self, points, whole),
+        )?;
+        Ok(Finer { halved, simulated, odd, of_odd })
+    }
 }
 
 /// The validation samples of one box under one schedule.
@@ -224,7 +259,7 @@ impl Validation {
         degree: usize,
         ends: Vec<Vec<f64>>,
     ) -> Result<Self, EnsembleError> {
-        let Ensembles { direct: ensemble, halved, .. } = ensembles;
+        let ensemble = ensembles.direct;
         let domain = ensemble.domain();
         let mut points = step_validation(domain.dimension());
         let spread_over_box = validation(domain.dimension(), degree).split_off(points.len());
@@ -234,19 +269,23 @@ impl Validation {
         let spread = spread_over_box.len();
         points.extend(spread_over_box);
         let samples = domain.samples(&points);
-        let (mut direct, mut simulated) = ValidationTable::of(ensemble, &samples, observed, false)?;
-        let corners = direct.corners(domain.dimension());
-        if !corners.is_empty() {
-            let (at_corners, others) = ValidationTable::of(ensemble, &domain.samples(&corners), observed, false)?;
-            direct = direct.with(&at_corners);
-            simulated.add(points.len(), others);
-            points.extend(corners);
-        }
-        let (halved, with_halved_steps) = ValidationTable::of(halved, &samples[..first], observed, false)?;
-        let (odd, with_odd_steps) = OddSteps::run(ensembles, &points[..first], false)?;
+        let direct = || {
+            let (mut direct, mut simulated) = ValidationTable::of(ensemble, &samples, observed, false)?;
+            let corners = direct.corners(domain.dimension());
+            if !corners.is_empty() {
+                let (at_corners, others) = ValidationTable::of(ensemble, &domain.samples(&corners), observed, false)?;
+                direct = direct.with(&at_corners);
+                simulated.add(points.len(), others);
+            }
+            Ok((direct, simulated, corners))
+        };
+        let ((direct, simulated, corners), finer) =
+            ensembles.both(direct, || ensembles.finer(&points[..first], observed, false))?;
+        points.extend(corners);
+        let Finer { halved, simulated: with_halved_steps, odd, of_odd } = finer;
         let mut effort = simulated.effort;
         effort += with_halved_steps.effort;
-        effort += with_odd_steps;
+        effort += of_odd;
         let simulations = points.len() + first + odd.indices.len();
         let spans = direct.spans(&halved, &odd, ensemble);
         Ok(Self { points, spread, direct, halved, odd, simulations, effort, simulated, spans })
@@ -258,18 +297,16 @@ impl Validation {
     /// # Errors
     /// Where it cannot be assembled.
     pub fn of_nominal(ensembles: Ensembles, nominal: &[Vec<Range>], reached: usize) -> Result<Self, EnsembleError> {
-        let Ensembles { direct: ensemble, halved, .. } = ensembles;
+        let ensemble = ensembles.direct;
         let points = validation(0, 0);
         let at = |row: usize| nominal.iter().map(move |ranges| ranges[row].lower);
         let values = (0..reached).flat_map(at).collect();
         let direct = ValidationTable { motions: 0, outputs: ensemble.outputs(), samples: points.len(), values };
-        let samples = ensemble.domain().samples(&points);
-        let (halved, simulated) = ValidationTable::of(halved, &samples, Observed::Outputs, true)?;
-        let (odd, with_odd_steps) = OddSteps::run(ensembles, &points, true)?;
+        let Finer { halved, simulated, odd, of_odd } = ensembles.finer(&points, Observed::Outputs, true)?;
         let simulations = points.len() + odd.indices.len();
         let spans = direct.spans(&halved, &odd, ensemble);
         let mut effort = simulated.effort;
-        effort += with_odd_steps;
+        effort += of_odd;
         let simulated = Simulated::default();
         Ok(Self { points, spread: 0, direct, halved, odd, simulations, effort, simulated, spans })
     }

@@ -2,31 +2,51 @@
 
 use super::tuning::TUNING;
 
+/// Samples that are looked at on either side.
+const AWAY: usize = 4;
+
 /// A sample among those along one axis.
-pub(super) struct Along<'a> {
-    /// Values of the part's samples.
-    pub values: &'a [f64],
-    /// Its number among these.
-    pub index: usize,
-    /// From one sample of the axis to the next.
-    pub stride: usize,
+pub(super) struct Along {
+    /// Values from `AWAY` samples before to as many after; zero where none is known.
+    values: [f64; 2 * AWAY + 1],
+    /// Second differences at all of them but the first and the last.
+    bends: [f64; 2 * AWAY - 1],
+    /// How many samples are known before and after, up to `AWAY`: none beyond the axis' ends, and in another part of
+    /// the scan.
+    before: usize,
+    after: usize,
     /// Its number along the axis,
-    pub at: usize,
+    at: usize,
     /// and the axis' samples.
-    pub count: usize,
+    count: usize,
 }
 
-impl Along<'_> {
-    /// The value so many samples further; `None` beyond the axis' ends, and in another part of the scan.
-    fn value(&self, away: isize) -> Option<f64> {
-        let at = self.at.checked_add_signed(away).filter(|&at| at < self.count)?;
-        let index = (self.index + self.stride * at).checked_sub(self.stride * self.at)?;
-        self.values.get(index).copied()
+impl Along {
+    /// The sample `index` of a part's values, which is number `at` of `count` along an axis, with this stride from one
+    /// sample of the axis to the next.
+    pub fn new(values: &[f64], index: usize, stride: usize, at: usize, count: usize) -> Self {
+        let before = AWAY.min(at).min(index / stride);
+        let after = AWAY.min(count - 1 - at).min((values.len() - 1 - index) / stride);
+        let mut window = [0.0; 2 * AWAY + 1];
+        let known = values[index - stride * before..].iter().step_by(stride);
+        window[AWAY - before..=AWAY + after].iter_mut().zip(known).for_each(|(into, value)| *into = *value);
+        let bends = std::array::from_fn(|left| window[left] - 2.0 * window[left + 1] + window[left + 2]);
+        Self { values: window, bends, before, after, at, count }
     }
 
-    /// The second difference so many samples further.
+    /// The value so many samples further, at most `AWAY`.
+    fn value(&self, away: isize) -> Option<f64> {
+        self.is_known(away).then(|| self.values[AWAY.wrapping_add_signed(away)])
+    }
+
+    fn is_known(&self, away: isize) -> bool {
+        away.unsigned_abs() <= if away < 0 { self.before } else { self.after }
+    }
+
+    /// The second difference so many samples further, less than `AWAY`.
     fn bend(&self, away: isize) -> Option<f64> {
-        Some(self.value(away - 1)? - 2.0 * self.value(away)? + self.value(away + 1)?)
+        let is_known = self.is_known(away - 1) && self.is_known(away + 1);
+        is_known.then(|| self.bends[(AWAY - 1).wrapping_add_signed(away)])
     }
 
     /// How far a smooth response may go below and above an inner sample; `None` at the ends.
@@ -103,7 +123,8 @@ impl Along<'_> {
         let (beside, beyond) = (self.bend(outer)?, self.bend(outer + (outer - away).signum())?);
         let growth = (beside / beyond).abs().clamp(1.0, TUNING.most_growth);
         let growth = if growth.is_nan() { 1.0 } else { growth };
-        let distance = (outer - away).unsigned_abs() as i32;
-        Some(if beside * bend < 0.0 { 0.0 } else { TUNING.growth * beside.abs() * growth.powi(distance) })
+        // One sample, or two.
+        let growth = if (outer - away).unsigned_abs() == 1 { growth } else { growth * growth };
+        Some(if beside * bend < 0.0 { 0.0 } else { TUNING.growth * beside.abs() * growth })
     }
 }

@@ -120,13 +120,14 @@ fn drops(extents: &mut [Extent], evaluate: &impl Fn(&[Vec<f64>]) -> Vec<f64>) ->
 mod tests {
     use super::super::extremes::extremes;
     use super::*;
+    use crate::numerics::Lattices;
 
     /// A sawtooth over two parameters ends at its teeth, where the search alone stops a millionth short.
     #[test]
     fn a_sawtooth_ends_at_its_teeth() {
         let saw = |xi: &[f64]| (3.0 + 1.3 * xi[0] + 0.4 * xi[1]).rem_euclid(1.0);
         let evaluate = |points: &[Vec<f64>]| points.iter().map(|xi| saw(xi)).collect::<Vec<f64>>();
-        let mut found = extremes(&[8, 8], &[0.0], evaluate);
+        let mut found = extremes(&Lattices::default(), &[8, 8], &[0.0], evaluate);
         to_brinks(&mut found, evaluate);
         assert!(found[0].range.lower < 1e-15 && found[0].range.upper > 1.0 - 1e-15, "{found:?}");
     }
@@ -137,7 +138,7 @@ mod tests {
         let evaluate = |points: &[Vec<f64>]| -> Vec<f64> {
             points.iter().map(|xi| (2.0 * xi[0]).sin()).chain(points.iter().map(|_| 3.0)).collect()
         };
-        let found = extremes(&[16], &[0.0; 2], evaluate);
+        let found = extremes(&Lattices::default(), &[16], &[0.0; 2], evaluate);
         let mut moved = found.clone();
         to_brinks(&mut moved, evaluate);
         assert!((moved[0].range.upper - 1.0).abs() < 1e-12 && (moved[0].range.lower + 1.0).abs() < 1e-12);

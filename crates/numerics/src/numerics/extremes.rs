@@ -11,41 +11,42 @@ use rustc_hash::FxHashMap;
 
 use super::extent::Extent;
 use super::lattice::Lattice;
+use super::lattices::{CheckedLattice, Lattices};
 use super::peak::Peak;
 use super::range::Range;
-use super::samples::spread;
 use super::tuning::TUNING;
 
 /// The least and the largest value are sought.
 const SIGNS: [f64; 2] = [-1.0, 1.0];
 
 /// Extremes of functions over [−1, 1]^k at once: `evaluate` gives their values at some ξ, function by function. The
-/// first lattice has `intervals` ≥ 2 along each axis, one for each. What is not more than `least`, a number for each
+/// first lattice, of `lattices`, has `intervals` ≥ 2 along each axis. What is not more than `least`, a number for each
 /// function, is not looked for: at least their rounding. Unknown where a value on a lattice is NaN.
-pub fn extremes(intervals: &[usize], least: &[f64], evaluate: impl Fn(&[Vec<f64>]) -> Vec<f64>) -> Vec<Extent> {
-    let mut lattice = Lattice::new(intervals);
+pub fn extremes(
+    lattices: &Lattices,
+    intervals: &[usize],
+    least: &[f64],
+    evaluate: impl Fn(&[Vec<f64>]) -> Vec<f64>,
+) -> Vec<Extent> {
     let mut intervals = intervals.to_vec();
     loop {
-        let points = lattice.points();
-        let count = points.len();
-        let scattered =
-            if intervals.is_empty() { 0 } else { (count / TUNING.lattice_points_a_check).max(TUNING.least_checks) };
-        let checks = spread(intervals.len(), scattered);
-        let all = [points, checks.clone()].concat();
-        let values = evaluate(&all);
+        let checked = lattices.of(&intervals);
+        let CheckedLattice { lattice, count, points: all } = &*checked;
+        let (count, checks) = (*count, &all[*count..]);
+        let values = evaluate(all);
         let lines: Vec<(&[f64], &[f64])> =
             values.chunks_exact(all.len()).take(least.len()).map(|line| line.split_at(count)).collect();
-        let finer = finer(&lattice, &intervals, &lines, least);
+        let finer = finer(lattice, &intervals, &lines, least);
         if finer != intervals {
-            (lattice, intervals) = (Lattice::new(&finer), finer);
+            intervals = finer;
             continue;
         }
-        let search = |(output, line): (usize, &(&[f64], &[f64]))| Search::new(output, least[output], &lattice, line.0);
+        let search = |(output, line): (usize, &(&[f64], &[f64]))| Search::new(output, least[output], lattice, line.0);
         let mut searches: Vec<Search> = lines.iter().enumerate().map(search).collect();
         for _ in 0..TUNING.more_candidates {
             climb(&mut searches.iter_mut().flat_map(|search| &mut search.ends).collect::<Vec<_>>(), &evaluate);
             let mut refines = false;
-            searches.iter_mut().for_each(|search| refines |= search.refine_more(&lattice));
+            searches.iter_mut().for_each(|search| refines |= search.refine_more(lattice));
             if !refines {
                 break;
             }
@@ -58,10 +59,10 @@ pub fn extremes(intervals: &[usize], least: &[f64], evaluate: impl Fn(&[Vec<f64>
         };
         let doubled: Vec<usize> = intervals.iter().map(|count| 2 * count).collect();
         if (0..found.len()).any(beyond) && has_room(&doubled) {
-            (lattice, intervals) = (Lattice::new(&doubled), doubled);
+            intervals = doubled;
             continue;
         }
-        found.iter_mut().zip(&lines).for_each(|(extent, line)| extent.include(&checks, line.1));
+        found.iter_mut().zip(&lines).for_each(|(extent, line)| extent.include(checks, line.1));
         return found;
     }
 }

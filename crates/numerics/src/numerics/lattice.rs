@@ -56,8 +56,12 @@ impl Lattice {
     /// The values at a point and at those one and two further along an axis, mirrored at the faces: two before, before,
     /// here, after, two after.
     fn along(&self, values: &[f64], place: usize, axis: usize, at: usize) -> [f64; 5] {
-        let count = self.intervals[axis] as isize;
         let stride = self.strides[axis];
+        if at >= 2 && at + 2 <= self.intervals[axis] {
+            let first = &values[place - 2 * stride..];
+            return [first[0], first[stride], first[2 * stride], first[3 * stride], first[4 * stride]];
+        }
+        let count = self.intervals[axis] as isize;
         [-2, -1, 0, 1, 2].map(|away| {
             let index = (at as isize + away).rem_euclid(2 * count);
             let mirrored = index.min(2 * count - index) as usize;

@@ -218,7 +218,7 @@ impl Line<'_> {
         for &count in self.points.iter().rev() {
             if count > 2 {
                 let at = (first + index) / stride % count;
-                let along = Along { values, index, stride, at, count };
+                let along = Along::new(values, index, stride, at, count);
                 let smooth = along.smooth();
                 if smooth.is_none() && at > 0 && at + 1 < count {
                     unknown += 1.0;

@@ -106,6 +106,8 @@ tuning! {
         left_candidate: f64 = 1e-5, moves "ranges, within their error";
         /// Most points of a lattice, by the number of parameters.
         lattice_points: [usize; 3] = [4097, 16_641, 17_576], moves "ranges, within their error";
+        /// Points of lattices that are kept for further functions, at most.
+        kept_points: usize = 1 << 18, moves "time and memory";
         /// Most terms of a polynomial that is fitted to values and derivatives: the work grows with their cube.
         most_terms: usize = 1000, moves "surrogates of many parameters";
         /// Equations for each term, at least: with two, what the terms lack went into products by tens of their size.

@@ -57,7 +57,8 @@ pub(super) fn deterministic(study: &Study, plan: &StepPlan) -> Result<Results, R
         let finer = [plan.halved(), plan.at_odds()];
         let [halved, odd] = finer.each_ref().map(|plan| study.motions(plan.steps(), &progress));
         let ratio = schedule.ratio_to(&finer[1].schedule);
-        let ensembles = Ensembles { direct: &motions, halved: &halved, odd: &odd, ratio };
+        let at_once = study.is_simulated_at_once();
+        let ensembles = Ensembles { direct: &motions, halved: &halved, odd: &odd, ratio, at_once };
         let validation =
             Validation::of_nominal(ensembles, &nominal.bands, nominal.reached).map_err(simulation_error)?;
         if let Some(allowed) = study.request.tolerance

@@ -122,7 +122,7 @@ pub struct Options<'a> {
 }
 
 impl Default for Options<'_> {
-    /// What the model asks for, on all cores.
+    /// What the model asks for, on all cores, however long it takes: a question of a person sets `costly`.
     fn default() -> Self {
         Self {
             methods: None,

@@ -122,6 +122,11 @@ impl<'a> Study<'a> {
         Schedule::rows_of(self.description.simulation.duration, self.description.simulation.output_step)
     }
 
+    /// Whether several ensembles may be simulated at once: stored simulations and questions to a program are in order.
+    pub(super) fn is_simulated_at_once(&self) -> bool {
+        self.stored.is_none() && self.source.is_none()
+    }
+
     /// The motions with these steps.
     pub(super) fn motions<'s>(&'s self, steps: Steps<'s>, progress: &'s Progress<'s>) -> Motions<'s> {
         let motions = Motions::new(&self.simulator, &self.domain, steps, progress, self.interruption);

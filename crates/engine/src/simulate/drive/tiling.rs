@@ -7,8 +7,10 @@ use symdiff::WIDTHS;
 /// tiling.
 pub(in crate::simulate) fn tiles(samples: usize, registers: usize, threads: usize) -> Vec<(usize, usize, usize)> {
     let fits = TUNING.tile_memory / (registers * size_of::<f64>()).max(1);
-    let share = samples.div_ceil(threads).min(fits.clamp(TUNING.narrowest_tile, TUNING.widest_tile));
-    let width = WIDTHS.into_iter().rev().find(|&width| width <= share).unwrap_or(1);
+    let widths = TUNING.narrowest_tile..=fits.clamp(TUNING.narrowest_tile, TUNING.widest_tile);
+    // The last thread ends after so many tiles; of widths that take as long the widest takes least of all threads.
+    let until_last = |width: &usize| samples.div_ceil(*width).div_ceil(threads) * (TUNING.dispatch + width);
+    let width = WIDTHS.into_iter().rev().filter(|width| widths.contains(width)).min_by_key(until_last).unwrap_or(1);
     let mut tiles = Vec::new();
     let mut first = 0;
     while first < samples {

@@ -12,6 +12,8 @@ tuning! {
         /// Most memory of a tile, so that a large mechanism's stays in the second-level cache, bytes. Tiles are
         /// narrower then, down to `narrowest_tile`.
         tile_memory: usize = 2 << 20, moves "time only";
+        /// Samples of a tile whose arithmetic takes as long as the dispatch of its instructions does.
+        dispatch: usize = 24, moves "time only";
         /// Narrowest tile: below it, dispatch costs more than memory does.
         narrowest_tile: usize = 8, moves "time only";
     }

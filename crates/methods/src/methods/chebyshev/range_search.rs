@@ -4,7 +4,9 @@
 use std::convert::Infallible;
 
 use super::tuning::TUNING;
-use crate::numerics::{Extent, ExtremeSearch, Extremes, Range, Separation, extremes, extremes_from, largest, spread};
+use crate::numerics::{
+    Extent, ExtremeSearch, Extremes, Lattices, Range, Separation, extremes, extremes_from, largest, spread,
+};
 
 /// The extremes of each output in the row before, where they were searched for by climbs.
 pub(super) type Previous = Vec<Option<Extremes>>;
@@ -36,6 +38,7 @@ pub(super) const fn block(output: usize) -> usize {
 /// How ranges over a box are found.
 pub(super) struct RangeSearch {
     separation: Separation,
+    lattices: Lattices,
     climbs: Option<ExtremeSearch>,
     /// What climbs are checked by.
     checks: Vec<Vec<f64>>,
@@ -50,7 +53,7 @@ impl RangeSearch {
             .map(|xi| xi.into_iter().rev().map(|xi| -xi).collect())
             .collect();
         let climbs = (k > TUNING.lattice_parameters).then(|| ExtremeSearch::new(k));
-        Self { separation: Separation::new(k), climbs, checks }
+        Self { separation: Separation::new(k), lattices: Lattices::default(), climbs, checks }
     }
 
     /// The search by climbs, for more parameters than a lattice can take.
@@ -112,7 +115,7 @@ impl RangeSearch {
         let evaluate = |points: &[Vec<f64>]| (functions.evaluate)(outputs, points);
         let Some(search) = &self.climbs else {
             let all: Vec<usize> = (0..functions.degrees.len()).collect();
-            return extremes(&functions.intervals(&all), &functions.rounding(outputs), evaluate);
+            return extremes(&self.lattices, &functions.intervals(&all), &functions.rounding(outputs), evaluate);
         };
         previous.resize(previous.len().max(outputs.iter().max().map_or(0, |most| most + 1)), None);
         // Of all, or of none.
@@ -149,7 +152,7 @@ impl RangeSearch {
                 (functions.evaluate)(outputs, &whole)
             };
             let parts = if group.len() <= TUNING.lattice_parameters {
-                extremes(&functions.intervals(group), &functions.rounding(outputs), evaluate)
+                extremes(&self.lattices, &functions.intervals(group), &functions.rounding(outputs), evaluate)
             } else {
                 let search = ExtremeSearch::new(group.len());
                 let found = climb(&search, outputs.len(), &[], &[], &evaluate);

@@ -12,7 +12,7 @@ use nalgebra::Vector3;
 
 use super::RunError;
 use super::black_box::needs_mechanism;
-use super::formulation::assembled;
+use super::formulation::{assembled, assembled_alike};
 use crate::assemble::Questions;
 use crate::elements::effects::Scope;
 use crate::elements::{Glyph, Surroundings};
@@ -20,7 +20,7 @@ use crate::grammar::{Coordinate, PointRef, Reference};
 use crate::model::{Body, Description};
 use crate::numerics::Sample;
 use crate::results::{Drawing, DrawnBody, DrawnElement, DrawnLength, DrawnPoint};
-use crate::simulate::Assembled;
+use crate::simulate::{Assembled, Simulator};
 use asked::{AskedBody, AskedVector, DrawingOutputs, DrawingValues, RelativeFrame};
 use tuning::TUNING;
 
@@ -29,7 +29,7 @@ use tuning::TUNING;
 /// # Errors
 /// Where the mechanism cannot be built or assembled.
 pub fn drawing(description: &Description) -> Result<Drawing, RunError> {
-    let drawing = drawn(description, None)?;
+    let drawing = drawn(description, None, None)?;
     if !has_ground(description) {
         return Ok(drawing);
     }
@@ -38,7 +38,7 @@ pub fn drawing(description: &Description) -> Result<Drawing, RunError> {
         points.chain(body.center_of_mass).chain([body.position])
     });
     let along = extent(places.map(|place| place[0]));
-    drawn(description, Some(along))
+    drawn(description, Some(along), None)
 }
 
 /// Whether effects act on ground of which a drawing shows a part.
@@ -57,8 +57,13 @@ pub(super) fn extent(numbers: impl Iterator<Item = f64>) -> [f64; 2] {
     [least - margin, most + margin]
 }
 
-/// Draws it with its ground from one place to another along x, m.
-pub(super) fn drawn(description: &Description, along: Option<[f64; 2]>) -> Result<Drawing, RunError> {
+/// Draws it with its ground from one place to another along x, m. `known`: its program for other questions, if there
+/// is one, whose start is taken.
+pub(super) fn drawn(
+    description: &Description,
+    along: Option<[f64; 2]>,
+    known: Option<&Simulator>,
+) -> Result<Drawing, RunError> {
     needs_mechanism(description, "a drawing")?;
     let mut asked = DrawingOutputs::default();
     let bodies = description.bodies.iter().enumerate();
@@ -72,7 +77,11 @@ pub(super) fn drawn(description: &Description, along: Option<[f64; 2]>) -> Resul
     let first_length = asked.0.len();
     let pairs = pairs_of_points(description, &mut asked);
 
-    let assembled = assembled(&Questions { outputs: asked.0.into(), ..Questions::of(description) })?;
+    let questions = Questions { outputs: asked.0.into(), ..Questions::of(description) };
+    let assembled = match known {
+        Some(known) => assembled_alike(&questions, known)?,
+        None => assembled(&questions)?,
+    };
     let nominal: Sample = assembled.system.parameters.iter().map(|parameter| parameter.nominal).collect();
     let values = DrawingValues(assembled.outputs_at_start(0..first_length, &nominal));
     let frames = bodies.iter().map(|body| values.frame(body)).collect();

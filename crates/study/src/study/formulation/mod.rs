@@ -7,6 +7,7 @@
 //! branch. A start in a singular configuration, a motion that passes one, and redundant constraints are left to
 //! absolute coordinates.
 
+mod alike;
 mod candidates;
 mod comparison;
 mod loop_cuts;
@@ -23,6 +24,7 @@ use comparison::starts_alike;
 use singular::passes_singular;
 use tuning::TUNING;
 
+pub use alike::{assembled_alike, compiled_alike};
 pub use comparison::instructions;
 
 /// Builds and compiles a model in the formulation that it asks for, or in the shorter one. A formulation that takes too
@@ -115,13 +117,24 @@ fn shortest(questions: &Questions, absolute: Simulator, joint: Simulator, start:
     let passes = || start.is_some() && passes_singular(questions, &absolute);
     let singular = "the nominal motion passes singular configurations";
     let is_first_shorter = is_shorter(&joint, &absolute);
-    if is_first_shorter && passes() {
+    let cut_best = || {
+        loop_cuts::shortest(questions, joint, true, |other, best| {
+            let system = assemble::in_joint_coordinates(other, None, start).ok()?.ok()?;
+            Compiled::within(system, other.description, enough(best)).ok()
+        })
+    };
+    let joint = if is_first_shorter && rayon::current_num_threads() > 1 {
+        // A second thread need not wait for what is seldom found.
+        let (is_singular, joint) = rayon::join(passes, cut_best);
+        if is_singular {
+            return chosen(absolute, singular.to_owned());
+        }
+        joint
+    } else if is_first_shorter && passes() {
         return chosen(absolute, singular.to_owned());
-    }
-    let joint = loop_cuts::shortest(questions, joint, true, |other, best| {
-        let system = assemble::in_joint_coordinates(other, None, start).ok()?.ok()?;
-        Compiled::within(system, other.description, enough(best)).ok()
-    });
+    } else {
+        cut_best()
+    };
     if !is_first_shorter && is_shorter(&joint, &absolute) && passes() {
         return chosen(absolute, singular.to_owned());
     }

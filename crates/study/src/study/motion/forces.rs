@@ -6,13 +6,11 @@
 use symdiff::Formula;
 
 use super::super::drawing::asked::{AskedVector, DrawingOutputs, DrawingValues};
-use super::MotionOptions;
 use super::rows::MotionRows;
 use super::tuning::TUNING;
 use crate::grammar::{PointRef, Sensor};
 use crate::model::{Analysis, Description};
 use crate::results::MovingForce;
-use crate::study::RunError;
 
 /// A force that is asked.
 struct AskedForce {
@@ -22,56 +20,63 @@ struct AskedForce {
     force: AskedVector,
 }
 
-/// The forces at some times of the nominal motion; none where they cannot be computed.
-pub(super) fn forces(description: &Description, times: &[f64], options: MotionOptions) -> Vec<MovingForce> {
-    // Without forces there is no motion that could show them, and not every motion is of forces.
-    let has_forces = matches!(description.analysis, Analysis::Motion | Analysis::Statics);
-    if !has_forces {
-        return Vec::new();
-    }
-    simulated(description, times, options).unwrap_or_default()
+/// A simulation of the nominal motion, of which forces are asked.
+pub(super) struct SimulatedForces {
+    asked: Vec<AskedForce>,
+    /// Of the rows, s.
+    times: Vec<f64>,
+    rows: Vec<DrawingValues>,
 }
 
-fn simulated(description: &Description, times: &[f64], options: MotionOptions) -> Result<Vec<MovingForce>, RunError> {
-    let mut asked = DrawingOutputs::default();
-    let wanted = ask(description, &mut asked);
-    if wanted.is_empty() {
-        return Ok(Vec::new());
+impl SimulatedForces {
+    /// Simulates a model, of which other things are asked too, by the same steps; `None` where forces cannot be
+    /// computed, or there are none.
+    pub fn of(description: &Description, others: &MotionRows) -> Option<Self> {
+        // Without forces there is no motion that could show them, and not every motion is of forces.
+        let has_forces = matches!(description.analysis, Analysis::Motion | Analysis::Statics);
+        let mut outputs = DrawingOutputs::default();
+        let asked = if has_forces { ask(description, &mut outputs) } else { Vec::new() };
+        if asked.is_empty() {
+            return None;
+        }
+        let numbers = outputs.0.len();
+        let mut asking = MotionRows::asking(description, outputs, Some(&others.simulator), others.interruption).ok()?;
+        asking.between_events = others.between_events;
+        let mut rows: Vec<DrawingValues> = Vec::new();
+        let nominal = [asking.domain.nominal.clone()];
+        let (times, _) = asking.of_samples(description, &nominal, numbers, |_, _, values| rows.push(values)).ok()?;
+        (!times.is_empty()).then_some(Self { asked, times, rows })
     }
-    let numbers = asked.0.len();
-    let mut asking = MotionRows::asking(description, asked, options.interruption)?;
-    asking.between_events = options.between_events;
-    let mut rows: Vec<DrawingValues> = Vec::new();
-    let nominal = [asking.domain.nominal.clone()];
-    let (found, _) = asking.of_samples(description, &nominal, numbers, |_, _, values| rows.push(values))?;
-    if found.is_empty() {
-        return Ok(Vec::new());
+
+    /// The forces at some times of the motion.
+    pub fn at(self, times: &[f64]) -> Vec<MovingForce> {
+        let Self { asked, times: found, rows } = self;
+        // Both runs have rows at the same times, this one perhaps more of them; or fewer, where only other samples meet
+        // events.
+        let row = |time: f64| {
+            let after = found.partition_point(|&known| known < time - 1e-9 * time.abs()).min(found.len() - 1);
+            let before = if found[after] > time + 1e-9 * time.abs() { after.saturating_sub(1) } else { after };
+            let share = if after > before { (time - found[before]) / (found[after] - found[before]) } else { 0.0 };
+            (before, after, share)
+        };
+        let along = |wanted: &AskedForce| -> Vec<f64> {
+            let at = |values: &DrawingValues| {
+                let [place, force] = [wanted.at, wanted.force].map(|asked| values.vector(asked));
+                [place.x, place.y, place.z, force.x, force.y, force.z]
+            };
+            let of_time = |&time: &f64| {
+                let (before, after, share) = row(time);
+                let (from, to) = (at(&rows[before]), at(&rows[after]));
+                std::array::from_fn::<f64, 6, _>(|number| from[number] + share * (to[number] - from[number]))
+            };
+            times.iter().flat_map(of_time).collect()
+        };
+        let all = asked.into_iter().map(|wanted| {
+            let values = along(&wanted);
+            MovingForce { name: wanted.name, is_reaction: wanted.is_reaction, values }
+        });
+        all.filter(is_there).take(TUNING.most_arrows).collect()
     }
-    // Both runs have rows at the same times, this one perhaps more of them; or fewer, where only other samples meet
-    // events.
-    let row = |time: f64| {
-        let after = found.partition_point(|&known| known < time - 1e-9 * time.abs()).min(found.len() - 1);
-        let before = if found[after] > time + 1e-9 * time.abs() { after.saturating_sub(1) } else { after };
-        let share = if after > before { (time - found[before]) / (found[after] - found[before]) } else { 0.0 };
-        (before, after, share)
-    };
-    let along = |wanted: &AskedForce| -> Vec<f64> {
-        let at = |values: &DrawingValues| {
-            let [place, force] = [wanted.at, wanted.force].map(|asked| values.vector(asked));
-            [place.x, place.y, place.z, force.x, force.y, force.z]
-        };
-        let of_time = |&time: &f64| {
-            let (before, after, share) = row(time);
-            let (from, to) = (at(&rows[before]), at(&rows[after]));
-            std::array::from_fn::<f64, 6, _>(|number| from[number] + share * (to[number] - from[number]))
-        };
-        times.iter().flat_map(of_time).collect()
-    };
-    let all = wanted.into_iter().map(|wanted| {
-        let values = along(&wanted);
-        MovingForce { name: wanted.name, is_reaction: wanted.is_reaction, values }
-    });
-    Ok(all.filter(is_there).take(TUNING.most_arrows).collect())
 }
 
 /// Whether it acts at any time, and is a number at all of them.
@@ -126,9 +131,9 @@ mod tests {
     fn forces_of(text: &str) -> Vec<MovingForce> {
         let description =
             model::load_str("forces.yaml", text, &[]).unwrap_or_else(|diagnostics| panic!("{diagnostics}"));
-        let options =
-            MotionOptions { threads: None, size: 0, interruption: Interruption::default(), between_events: false };
-        forces(&description, &[0.0, 0.005], options)
+        let rows = MotionRows::asking(&description, DrawingOutputs::default(), None, Interruption::default()).unwrap();
+        let found = SimulatedForces::of(&description, &rows);
+        found.map_or_else(Vec::new, |found| found.at(&[0.0, 0.005]))
     }
 
     #[test]

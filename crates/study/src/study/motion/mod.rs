@@ -23,6 +23,7 @@ use crate::results::{
 };
 use crate::simulate::{Integration, Interruption};
 pub use by_hand::{Grip, Hand, Held};
+use forces::SimulatedForces;
 pub use movable::Movable;
 use rows::MotionRows;
 use samples::Samples;
@@ -78,11 +79,9 @@ pub fn report_motion(
 fn motion(description: &Description, options: MotionOptions) -> Result<Motion, RunError> {
     let pool = pool(options.threads)?;
     pool.install(|| {
-        // Its ground is drawn when it is known what the motion passes.
-        let drawing = drawn(description, None)?;
         let mut posed = Posed::compile(description, options.interruption)?;
         posed.rows.between_events = options.between_events;
-        posed.simulate(description, drawing, options)
+        posed.simulate(description, options.size)
     })
 }
 
@@ -108,10 +107,15 @@ impl<'a> Posed<'a> {
         let bodies = description.bodies.iter().enumerate();
         let bodies: Vec<AskedBody> = bodies.map(|(index, body)| asked.body(description, index, body)).collect();
         Ok(Self {
-            rows: MotionRows::asking(description, asked, interruption)?,
+            rows: MotionRows::asking(description, asked, None, interruption)?,
             bodies,
             spatial: description.space.spatial,
         })
+    }
+
+    /// The drawing, with its ground from one place to another along x, m.
+    fn drawn(&self, description: &Description, along: Option<[f64; 2]>) -> Result<Drawing, RunError> {
+        drawn(description, along, Some(&self.rows.simulator))
     }
 
     fn per_body(&self) -> usize {
@@ -136,16 +140,19 @@ impl<'a> Posed<'a> {
         parameters.collect()
     }
 
-    fn simulate(
-        &mut self,
-        description: &Description,
-        drawing: Drawing,
-        options: MotionOptions,
-    ) -> Result<Motion, RunError> {
+    fn simulate(&self, description: &Description, size: usize) -> Result<Motion, RunError> {
         let samples = Samples::of(&self.rows.domain);
         let wanted: Vec<Sample> =
             [&self.rows.domain.nominal].into_iter().chain(&samples.shown).chain(&samples.nodes).cloned().collect();
-        let (times, recorded) = self.record(description, &drawing, &wanted)?;
+        let poses = || {
+            // Its ground is drawn when it is known what the motion passes.
+            let drawing = self.drawn(description, None)?;
+            let (times, recorded) = self.record(description, &drawing, &wanted)?;
+            Ok::<_, RunError>((drawing, times, recorded))
+        };
+        let forces = || SimulatedForces::of(description, &self.rows);
+        let (poses, forces) = rayon::join(poses, forces);
+        let (drawing, times, recorded) = poses?;
         let rows = times.len();
         let complete = |sample: &Recorded| sample.stopped.is_none_or(|stopped| stopped >= rows);
         let shown: Vec<usize> = (1..=samples.shown.len()).filter(|&sample| complete(&recorded[sample])).collect();
@@ -154,8 +161,7 @@ impl<'a> Posed<'a> {
 
         let lines = self.lines();
         let terms = surrogate.map_or(0, |surrogate| surrogate.basis().len());
-        let most =
-            (options.size / (lines * (2 + shown.len() + terms)).max(1)).clamp(TUNING.fewest_poses, TUNING.most_poses);
+        let most = (size / (lines * (2 + shown.len() + terms)).max(1)).clamp(TUNING.fewest_poses, TUNING.most_poses);
         let weights = self.weights(&recorded[0].points, &drawing);
         let looked_at: Vec<&[f64]> = [0].iter().chain(&shown).map(|&sample| recorded[sample].rows.as_slice()).collect();
         let thinning = Thinning { samples: looked_at, weights: &weights };
@@ -208,7 +214,7 @@ impl<'a> Posed<'a> {
             samples,
             worst: Vec::new(),
             polynomials,
-            forces: forces::forces(description, &found_times, options),
+            forces: forces.map_or_else(Vec::new, |forces| forces.at(&found_times)),
             drawing: self.with_ground(description, drawing, &recorded[0].rows)?,
         })
     }
@@ -218,7 +224,7 @@ impl<'a> Posed<'a> {
         if !has_ground(description) {
             return Ok(drawing);
         }
-        drawn(description, Some(extent(rows.iter().copied().step_by(self.per_body()))))
+        self.drawn(description, Some(extent(rows.iter().copied().step_by(self.per_body()))))
     }
 
     /// How far a point of a body goes where a coordinate of its pose changes: 1 for positions, the body's reach for

@@ -9,7 +9,6 @@ use crate::numerics::Sample;
 use crate::results::{Drawing, Motion, Poses};
 use crate::simulate::Interruption;
 use crate::study::RunError;
-use crate::study::drawing::drawn;
 
 /// A compiled model whose bodies' poses are asked for, in place of its outputs.
 pub struct Movable<'a> {
@@ -24,8 +23,9 @@ impl<'a> Movable<'a> {
     /// # Errors
     /// Where the mechanism cannot be built or assembled.
     pub fn new(description: &'a Description, interruption: Interruption<'a>) -> Result<Self, RunError> {
-        let drawing = drawn(description, None)?;
-        Ok(Self { description, posed: Posed::compile(description, interruption)?, drawing })
+        let posed = Posed::compile(description, interruption)?;
+        let drawing = posed.drawn(description, None)?;
+        Ok(Self { description, posed, drawing })
     }
 
     /// Nominal values of the uncertain parameters.

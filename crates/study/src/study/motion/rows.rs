@@ -46,16 +46,21 @@ fn controlling(samples: &[Sample]) -> &[Sample] {
 }
 
 impl<'a> MotionRows<'a> {
-    /// Asks something, until it is interrupted.
+    /// Asks something, until it is interrupted. `known`: the model's program for other questions, if there is one,
+    /// whose formulation is taken.
     pub(super) fn asking(
         description: &Description,
         asked: DrawingOutputs,
+        known: Option<&Simulator>,
         interruption: Interruption<'a>,
     ) -> Result<Self, RunError> {
         // Responses are between outputs that are not asked here.
         let modes = ModesRequest { responses: Vec::new(), ..description.modes };
         let questions = Questions { outputs: asked.0.into(), modes: Cow::Owned(modes), ..Questions::of(description) };
-        let simulator = formulation::compiled(&questions)?;
+        let simulator = match known {
+            Some(known) => formulation::compiled_alike(&questions, known)?,
+            None => formulation::compiled(&questions)?,
+        };
         let parameters = &simulator.system.parameters;
         let domain = ParameterBox {
             nominal: parameters.iter().map(|parameter| parameter.nominal).collect(),

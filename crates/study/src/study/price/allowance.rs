@@ -69,7 +69,8 @@ impl Allowance {
         let estimate = self.estimate.get()?;
         let limit = TUNING.times as f64 * estimate.max(TUNING.seconds);
         Some(format!(
-            "ended after {}: {} were estimated; what is finished is kept; allow it to take longer with --yes",
+            "ended after {}: {} were estimated; what is finished is kept; allow it to take longer with --yes \
+             (in Rust `allow_costly`, in Python `costly=True`)",
             in_words(&limit),
             in_words(estimate)
         ))

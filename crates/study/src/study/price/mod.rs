@@ -22,8 +22,8 @@ pub use work::{stored_bytes, total_work};
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error(
     "{simulations:.0} simulations are asked for, which take {} or more on {threads} {}; `bounds: {{ tolerance: 1e-2 }}` \
-     takes as many as it needs; or give a lower `order` or fewer `points`, or allow it with --yes, or with \
-     `bounds: {{ budget: {{ solves: {simulations:.0} }} }}` in the model",
+     takes as many as it needs; or give a lower `order` or fewer `points`, or allow it with --yes (in Rust \
+     `allow_costly`, in Python `costly=True`), or with `bounds: {{ budget: {{ solves: {simulations:.0} }} }}` in the model",
     in_words(.seconds), if .threads == &1 { "thread" } else { "threads" }
 )]
 pub struct Price {

@@ -80,7 +80,8 @@ pub fn reduced(study: &Study, rows: &Bounded, progress: &Progress) -> Result<Fou
     let direct = ReducedEnsemble::new(&motions, store, schedule);
     let with_halved = ReducedEnsemble::new(&motions_halved, store, halved);
     let with_odd = ReducedEnsemble::new(&motions_odd, store, odd);
-    let ensembles = Ensembles { direct: &direct, halved: &with_halved, odd: &with_odd, ratio: schedule.ratio_to(odd) };
+    let (ratio, at_once) = (schedule.ratio_to(odd), study.is_simulated_at_once());
+    let ensembles = Ensembles { direct: &direct, halved: &with_halved, odd: &with_odd, ratio, at_once };
     let slopes = OfValues { study, motions: &motions, values: &direct, schedule };
     let mut results = bounds_of(study, ensembles, &slopes, plan, halved)?;
     let unreliable = rows.unreliable_from().is_some();

@@ -65,7 +65,8 @@ pub fn validation(
     let direct = study.motions(plan.steps(), progress);
     let [halved, odd] = plans.each_ref().map(|plan| study.motions(plan.steps(), progress));
     let ratio = plan.schedule.ratio_to(&plans[1].schedule);
-    let ensembles = Ensembles { direct: &direct, halved: &halved, odd: &odd, ratio };
+    let at_once = study.is_simulated_at_once();
+    let ensembles = Ensembles { direct: &direct, halved: &halved, odd: &odd, ratio, at_once };
     let ends = ends_of_combinations(ensembles.direct);
     Validation::run(ensembles, observed, study.request.degree(), ends).map_err(simulation_error)
 }
