@@ -47,6 +47,7 @@ pub(super) fn extents(row: &SegmentRow, lattice: &Lattice) -> Vec<Extent> {
             break;
         }
     }
+    TUNING.shares_of_ridge.iter().for_each(|&share| across(row, &mut climbs, share));
     let of_output = |output: usize| {
         let best = |sign: f64| {
             let own = climbs.iter().filter(|climb| climb.output == output && climb.sign == sign);
@@ -207,6 +208,65 @@ fn step(row: &SegmentRow, climbs: &mut [Climb]) -> bool {
             ((of_xi * climb.radius).min(1.0), (of_share * climb.of_share).min(TUNING.radius_of_share));
     }
     true
+}
+
+/// Moves all climbs to the vertex of the parabola across surfaces of equal share, through points that are so far to
+/// either side: a contact's ridge is so narrow there that trust regions end before it.
+fn across(row: &SegmentRow, climbs: &mut [Climb], share: f64) {
+    if climbs.is_empty() {
+        return;
+    }
+    let k = row.ensemble.domain().dimension();
+    let time = row.time;
+    let points = |all: &[Vec<f64>]| row.piece.surrogate.points(all.to_vec());
+    let values = |points: &[Point], climbs: &[Climb]| {
+        let sides = points.len() / climbs.len().max(1);
+        let at: Vec<(&Point, usize, f64)> =
+            points.iter().enumerate().map(|(index, point)| (point, climbs[index / sides].segment, time)).collect();
+        let values = row.outputs_on(&at);
+        let of = |index: usize| {
+            let climb = &climbs[index / sides];
+            let is_inside = points[index].is_inside() && (0.0..=1.0).contains(&climb.share(&points[index], time));
+            if is_inside { climb.sign * values[climb.output * at.len() + index] } else { f64::NAN }
+        };
+        (0..points.len()).map(of).collect::<Vec<f64>>()
+    };
+    let moved = |climb: &Climb, axis: usize| {
+        let mut xi = climb.point.xi.clone();
+        xi[axis] += inward(xi[axis]);
+        xi
+    };
+    let beside: Vec<Vec<f64>> = climbs.iter().flat_map(|own| (0..k).map(move |axis| moved(own, axis))).collect();
+    let beside = points(&beside);
+    let of_climb = |(climb, beside): (&Climb, &[Point])| -> Vec<f64> {
+        let here = climb.share(&climb.point, time);
+        let slope = |axis: usize| (climb.share(&beside[axis], time) - here) / inward(climb.point.xi[axis]);
+        let slopes: Vec<f64> = (0..k).map(slope).collect();
+        let square: f64 = slopes.iter().map(|slope| slope * slope).sum();
+        slopes.iter().map(|slope| share * slope / square).collect()
+    };
+    let ways: Vec<Vec<f64>> = climbs.iter().zip(beside.chunks_exact(k)).map(of_climb).collect();
+    let along = |climb: &Climb, way: &[f64], by: f64| -> Vec<f64> {
+        climb.point.xi.iter().zip(way).map(|(xi, way)| (xi + by * way).clamp(-1.0, 1.0)).collect()
+    };
+    let pairs: Vec<Vec<f64>> =
+        climbs.iter().zip(&ways).flat_map(|(climb, way)| [-1.0, 1.0].map(|by| along(climb, way, by))).collect();
+    let of_pairs = values(&points(&pairs), climbs);
+    let vertex = |((climb, way), pair): ((&Climb, &Vec<f64>), &[f64])| {
+        let (below, above) = (pair[0] - climb.sign * climb.value, pair[1] - climb.sign * climb.value);
+        let by = 0.5 * (below - above) / (below + above);
+        // A point that is not known leaves the climb where it is.
+        let by = if below + above < 0.0 { by.clamp(-1.0, 1.0) } else { 0.0 };
+        along(climb, way, by)
+    };
+    let ends: Vec<Vec<f64>> = climbs.iter().zip(&ways).zip(of_pairs.chunks_exact(2)).map(vertex).collect();
+    let ends = points(&ends);
+    let of_ends = values(&ends, climbs);
+    for ((climb, point), value) in climbs.iter_mut().zip(ends).zip(of_ends) {
+        if value > climb.sign * climb.value {
+            (climb.value, climb.point) = (climb.sign * value, point);
+        }
+    }
 }
 
 /// A difference that stays in the box.

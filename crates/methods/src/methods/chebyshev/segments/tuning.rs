@@ -25,6 +25,8 @@ tuning! {
         shrinks: (f64, f64) = (0.5, 0.25), moves "Chebyshev bounds through events";
         /// Radii in ξ and in the share after a move, over those before it.
         grows: (f64, f64) = (2.0, 1.5), moves "Chebyshev bounds through events";
+        /// Shares of a segment to either side of a climb's end, one after the other, through which parabolas are laid.
+        shares_of_ridge: [f64; 4] = [1e-2, 1e-3, 1e-4, 1e-5], moves "Chebyshev bounds through events";
         /// Moves of a climb, at most.
         moves: usize = 120, moves "Chebyshev bounds through events";
         /// Difference by which slopes are taken.
