@@ -9,7 +9,7 @@ use super::acting::Acting;
 use super::applied_forces::AppliedForces;
 use super::constraints::Constraints;
 use super::cuts::{cuts_of_several_axes, other_cuts};
-use super::formulation::FormulationInfo;
+use super::formulation_info::FormulationInfo;
 use super::inputs::MechanismInput;
 use super::links::links_of;
 use super::mechanism::Mechanism;

@@ -28,6 +28,7 @@ mod cuts;
 mod extent;
 mod flexible;
 mod formulation;
+mod formulation_info;
 mod ids;
 mod inputs;
 mod inventory;
@@ -68,7 +69,7 @@ pub use build::{
     build, closes_loops, has_joints_of_several_axes, in_absolute_coordinates, in_joint_coordinates, joint_elimination,
 };
 pub use cuts::{cuts_of_several_axes, other_cuts};
-pub use formulation::FormulationInfo;
+pub use formulation_info::FormulationInfo;
 pub use inputs::{InputInfo, RandomInput};
 pub use inventory::Inventory;
 pub use number_formulas::NumberFormulas;

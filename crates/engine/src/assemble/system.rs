@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use super::formulation::FormulationInfo;
+use super::formulation_info::FormulationInfo;
 use super::inputs::{InputInfo, RandomInput};
 use super::powers::PowerBalance;
 use symdiff::{Expr, Formula, Graph};

@@ -2,16 +2,13 @@
 
 use super::tuning::TUNING;
 
-/// Samples that are looked at on either side.
-const AWAY: usize = 4;
-
 /// A sample among those along one axis.
 pub(super) struct Along {
-    /// Values from `AWAY` samples before to as many after; zero where none is known.
-    values: [f64; 2 * AWAY + 1],
+    /// Values from four samples before to four after; zero where none is known.
+    values: [f64; 9],
     /// Second differences at all of them but the first and the last.
-    bends: [f64; 2 * AWAY - 1],
-    /// How many samples are known before and after, up to `AWAY`: none beyond the axis' ends, and in another part of
+    bends: [f64; 7],
+    /// How many samples are known before and after, up to four: none beyond the axis' ends, and in another part of
     /// the scan.
     before: usize,
     after: usize,
@@ -25,28 +22,28 @@ impl Along {
     /// The sample `index` of a part's values, which is number `at` of `count` along an axis, with this stride from one
     /// sample of the axis to the next.
     pub fn new(values: &[f64], index: usize, stride: usize, at: usize, count: usize) -> Self {
-        let before = AWAY.min(at).min(index / stride);
-        let after = AWAY.min(count - 1 - at).min((values.len() - 1 - index) / stride);
-        let mut window = [0.0; 2 * AWAY + 1];
+        let before = at.min(4).min(index / stride);
+        let after = (count - 1 - at).min(4).min((values.len() - 1 - index) / stride);
+        let mut window = [0.0; 9];
         let known = values[index - stride * before..].iter().step_by(stride);
-        window[AWAY - before..=AWAY + after].iter_mut().zip(known).for_each(|(into, value)| *into = *value);
+        window[4 - before..=4 + after].iter_mut().zip(known).for_each(|(into, value)| *into = *value);
         let bends = std::array::from_fn(|left| window[left] - 2.0 * window[left + 1] + window[left + 2]);
         Self { values: window, bends, before, after, at, count }
     }
 
-    /// The value so many samples further, at most `AWAY`.
+    /// The value so many samples further, at most four.
     fn value(&self, away: isize) -> Option<f64> {
-        self.is_known(away).then(|| self.values[AWAY.wrapping_add_signed(away)])
+        self.is_known(away).then(|| self.values[4_usize.wrapping_add_signed(away)])
     }
 
     fn is_known(&self, away: isize) -> bool {
         away.unsigned_abs() <= if away < 0 { self.before } else { self.after }
     }
 
-    /// The second difference so many samples further, less than `AWAY`.
+    /// The second difference so many samples further, less than four.
     fn bend(&self, away: isize) -> Option<f64> {
         let is_known = self.is_known(away - 1) && self.is_known(away + 1);
-        is_known.then(|| self.bends[(AWAY - 1).wrapping_add_signed(away)])
+        is_known.then(|| self.bends[3_usize.wrapping_add_signed(away)])
     }
 
     /// How far a smooth response may go below and above an inner sample; `None` at the ends.

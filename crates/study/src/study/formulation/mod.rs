@@ -124,7 +124,7 @@ fn shortest(questions: &Questions, absolute: Simulator, joint: Simulator, start:
         })
     };
     let joint = if is_first_shorter && rayon::current_num_threads() > 1 {
-        // A second thread need not wait for what is seldom found.
+        // Singular motions are rare: cuts are seldom compiled for nothing.
         let (is_singular, joint) = rayon::join(passes, cut_best);
         if is_singular {
             return chosen(absolute, singular.to_owned());
