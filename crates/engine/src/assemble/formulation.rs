@@ -1,4 +1,4 @@
-//! Formulations: by which coordinates a mechanism is described, and what prevents those of joints.
+//! Whether a mechanism can be described in joint coordinates.
 
 use symdiff::Formula;
 
@@ -7,26 +7,6 @@ use super::mechanism::Mechanism;
 use super::start::Named;
 use crate::model::{Description, JointKind, Reference, StartValue, Symbol};
 use crate::multibody::Context;
-
-/// By which coordinates a motion is described.
-#[derive(Clone, Debug, PartialEq)]
-pub struct FormulationInfo {
-    /// Whether by those of joints, as far as that goes.
-    pub joint: bool,
-    /// For people.
-    pub why: String,
-    /// The joints that close loops of the trees, by number; none in absolute coordinates.
-    pub cut: Vec<usize>,
-    /// The assembled start in absolute coordinates from which loops are closed; `None` where it is not known.
-    pub closed_from: Option<Vec<f64>>,
-}
-
-impl FormulationInfo {
-    /// `absolute` or `joint`.
-    pub fn name(&self) -> &'static str {
-        if self.joint { "joint" } else { "absolute" }
-    }
-}
 
 impl Mechanism<'_, '_> {
     /// What prevents joint coordinates; `None` where nothing does.

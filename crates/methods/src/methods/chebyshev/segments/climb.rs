@@ -216,7 +216,7 @@ fn across(row: &SegmentRow, climbs: &mut [Climb], share: f64) {
     if climbs.is_empty() {
         return;
     }
-    let k = row.ensemble.domain().dimension();
+    let k = row.domain.dimension();
     let time = row.time;
     let points = |all: &[Vec<f64>]| row.piece.surrogate.points(all.to_vec());
     let values = |points: &[Point], climbs: &[Climb]| {
