@@ -317,7 +317,7 @@ bounds: { chebyshev: { order: 5 } }
         let [low, middle, high] = [0, 1, 2].map(|quantile| own.quantiles[quantile][2]);
         let deviation = expected[1];
         for (found, value) in [own.mean[2], own.deviation[2], low, middle, high].into_iter().zip(expected) {
-            let allowed = 2.0 * (found.error + found.sampling) + 3e-4 * deviation;
+            let allowed = found.error + found.sampling + 3e-4 * deviation;
             assert!((found.value - value).abs() <= allowed, "{}: {found:?}, not {value}", own.name);
         }
         // Of 4096 simulated motions it is 3 % of the deviation.

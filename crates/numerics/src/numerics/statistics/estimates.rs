@@ -40,7 +40,8 @@ pub fn share_interval(seen: usize, of: usize) -> [f64; 2] {
 #[derive(Clone, Debug, Default)]
 pub struct Replicates {
     means: Vec<f64>,
-    deviations: Vec<f64>,
+    /// About each replicate's own mean.
+    variances: Vec<f64>,
     /// By quantile, replicate by replicate.
     quantiles: Vec<Vec<f64>>,
     /// The shares below them.
@@ -62,7 +63,7 @@ impl Replicates {
         let mean = values.iter().sum::<f64>() / n;
         let squares: f64 = values.iter().map(|x| (x - mean) * (x - mean)).sum();
         self.means.push(mean);
-        self.deviations.push((squares / (n - 1.0)).sqrt());
+        self.variances.push(squares / n);
         if values.len() <= TUNING.pooled {
             self.pooled.extend_from_slice(values);
         }
@@ -78,9 +79,13 @@ impl Replicates {
         Estimate::of(&self.means)
     }
 
-    /// Standard deviation.
+    /// Standard deviation, about the mean of all replicates: points of a lattice know it far better than as many
+    /// random ones, whose variance about their own mean is divided by one less than their number.
     pub fn deviation(&self) -> Estimate {
-        Estimate::of(&self.deviations)
+        let mean = self.mean().value;
+        let own =
+            self.variances.iter().zip(&self.means).map(|(variance, own)| (variance + (own - mean).powi(2)).sqrt());
+        Estimate::of(&own.collect::<Vec<f64>>())
     }
 
     /// Quantiles, in the order of their shares. Of few samples they are those of all replicates together: a law that
@@ -166,6 +171,24 @@ mod tests {
                 let off = (found.value - truth).abs();
                 assert!(off <= found.sampling && off < 0.3 * truth, "{count}: {found:?} {truth}");
             }
+        }
+    }
+
+    /// The mean of lattice points is known far better than that of as many random ones: nothing is to be divided by
+    /// one less than their number, as if it were not.
+    #[test]
+    fn deviations_of_evenly_spread_points_lie_within_their_confidence() {
+        let jump: fn(&[f64]) -> f64 = |p| if p[0] + 0.6 * p[1] > 0.8 { 1.0 } else { -1.0 };
+        let along: fn(&[f64]) -> f64 = |p| 3.0_f64.sqrt() * (2.0 * p[0] - 1.0);
+        let wave: fn(&[f64]) -> f64 = |p| 2.0_f64.sqrt() * (std::f64::consts::TAU * (2.0 * p[0] + p[1])).sin();
+        for law in [jump, along, wave] {
+            let mut replicates = Replicates::new(&[]);
+            for number in 0..REPLICATES {
+                let mut values: Vec<f64> = replicate(number, 2, 1 << 10).chunks_exact(2).map(law).collect();
+                replicates.add(&mut values);
+            }
+            let found = replicates.deviation();
+            assert!((found.value - 1.0).abs() <= found.sampling + 1e-12 && found.sampling < 1e-3, "{found:?}");
         }
     }
 
