@@ -5,6 +5,7 @@ use mbint::results::Fit;
 
 use crate::common::dormand_prince::dormand_prince;
 use crate::common::random::Random;
+use crate::through_events::elastic;
 
 /// A body that moves by x₀ + v t: linear in both parameters.
 const LINE: &str = "
@@ -236,24 +237,6 @@ simulation: { duration: 2, step: 1e-3, output_step: 0.02 }
 bounds: { chebyshev: { order: 3 } }
 ";
 
-/// Height of the ball: parabolas, and in contact y = −(u/ω) sin ωτ − (g/ω²)(1 − cos ωτ).
-fn bounced(stiffness: f64, height: f64, t: f64) -> f64 {
-    let (g, omega) = (9.81, stiffness.sqrt());
-    let speed = (2.0 * g * height).sqrt();
-    let fall = speed / g;
-    let contact = (std::f64::consts::PI + 2.0 * (g / (speed * omega)).atan()) / omega;
-    if t < fall {
-        return height - 0.5 * g * t * t;
-    }
-    let within = (t - fall) % (contact + 2.0 * fall);
-    if within < contact {
-        let (sin, cos) = (omega * within).sin_cos();
-        return -speed / omega * sin - g / (omega * omega) * (1.0 - cos);
-    }
-    let flight = within - contact;
-    speed * flight - 0.5 * g * flight * flight
-}
-
 /// Where all steps are those of the model, no parameters agree with the rows.
 #[test]
 fn the_truth_of_a_bouncing_ball_is_not_excluded() {
@@ -267,7 +250,7 @@ fn the_truth_of_a_bouncing_ball_is_not_excluded() {
         let late = |random: &mut Random| if is_regular { 0.0 } else { between(random, -0.012, 0.0) };
         let rows = (1..=80).map(|row| 0.025 * f64::from(row));
         let rows: Vec<f64> = rows.map(|t| t + late(&mut random)).collect();
-        let rows = rows.into_iter().map(|t| [t, bounced(stiffness, height, t) + between(&mut random, -2e-3, 2e-3)]);
+        let rows = rows.into_iter().map(|t| [t, elastic(height, stiffness, t)[0] + between(&mut random, -2e-3, 2e-3)]);
         let table = rows.fold("time,y\n".to_owned(), |text, [t, y]| text + &format!("{t:?},{y:?}\n"));
         let found = model.study().fit(&table, &[("y", "2 mm")]).unwrap();
         let set = found.set.as_ref().unwrap();

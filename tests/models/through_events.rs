@@ -36,7 +36,7 @@ bounds: { chebyshev: { order: 3 } }
 ";
 
 /// Height and velocity of the elastic ball: y = −(u/ω) sin ωτ − (g/ω²)(1 − cos ωτ) in contact.
-fn elastic(height: f64, stiffness: f64, t: f64) -> [f64; 2] {
+pub fn elastic(height: f64, stiffness: f64, t: f64) -> [f64; 2] {
     let (g, omega) = (9.81, stiffness.sqrt());
     let speed = (2.0 * g * height).sqrt();
     let fall = speed / g;
@@ -294,20 +294,10 @@ fn statistics_go_through_events() {
 /// lattice by Runge and Kutta's method, which are known to 3e-4 of the deviation.
 #[test]
 fn statistics_are_those_of_the_polynomials_between_events() {
-    let text = "\
-model: bounce
-parameters: { h0: { value: 1, unit: m, tolerance: 2% }, d: { value: 0.1, unit: s/m, tolerance: 5% } }
-bodies: { ball: { mass: 1, coordinates: [y] } }
-effects:
-  weight: { gravity: { acceleration: [0, -9.81] } }
-  floor: { contact: { between: [ground, ball], plane: y, impact: { stiffness: 1e5, exponent: 1, dissipation: d } } }
-initial: { ball.y: h0, ball.vy: 0 }
-outputs: { y: ball.y, v: ball.vy }
-simulation: { duration: 1.74, step: 1e-4, output_step: 0.58 }
-statistics: { quantiles: [0.135%, 50%, 99.865%] }
-bounds: { chebyshev: { order: 5 } }
-";
-    let (_, summary) = run_methods(&read(text), None);
+    let simulation = "duration: 1.74, step: 1e-4, output_step: 0.58";
+    let text = BOUNCE.replace("duration: 2, step: 1e-4, output_step: 0.02", simulation).replace("order: 3", "order: 5");
+    let text = format!("{text}statistics: {{ quantiles: [0.135%, 50%, 99.865%] }}\n");
+    let (_, summary) = run_methods(&read(&text), None);
     let found = summary.statistics.as_ref().unwrap();
     let expected = [
         [0.003_822_43, 0.012_046_20, -0.009_884_07, 0.000_968_84, 0.040_248_40],

@@ -36,39 +36,25 @@ pub trait Integrator<'s>: Debug {
     fn reduced(&mut self) -> Vec<f64>;
 
     /// Newton iterations and rank-revealing solves so far; none of explicit methods.
-    fn counters(&self) -> Counters {
-        Counters::default()
-    }
+    fn counters(&self) -> Counters;
 
     /// Singular configurations that the first sample has passed, if they are searched for.
-    fn singular_passes(&self) -> Vec<SingularPass> {
-        Vec::new()
-    }
+    fn singular_passes(&self) -> Vec<SingularPass>;
 
     /// The error of a redundant constraint that the first sample has left open, if they are searched for.
-    fn parted(&self) -> Option<SimulationError> {
-        None
-    }
+    fn parted(&self) -> Option<SimulationError>;
 
     /// The constraint that cannot be closed where a sample stopped: the mechanism locks there. Known for the first
     /// sample of each tile that stops.
-    fn open_constraint(&self, _stop: &Stop, _schedule: &Schedule) -> Option<OpenConstraint> {
-        None
-    }
+    fn open_constraint(&self, stop: &Stop, schedule: &Schedule) -> Option<OpenConstraint>;
 
     /// The first row before which a sample's local errors add up to more than the tolerance, fixed steps pass over a
     /// force, or a sample meets an event that others do not.
-    fn beyond_tolerance_from(&self) -> Option<usize> {
-        None
-    }
+    fn beyond_tolerance_from(&self) -> Option<usize>;
 
     /// The first surfaces that a contact does not hold apart any more.
-    fn too_deep(&self) -> Option<TooDeep> {
-        None
-    }
+    fn too_deep(&self) -> Option<TooDeep>;
 
     /// The sample with the largest sum of local errors over the tolerance, and that sum.
-    fn largest_error_ratio(&self) -> Option<(usize, f64)> {
-        None
-    }
+    fn largest_error_ratio(&self) -> Option<(usize, f64)>;
 }

@@ -142,10 +142,8 @@ impl<'s, T: RowTile<'s>> Integrator<'s> for TiledRun<'s, T> {
     }
 
     fn largest_error_ratio(&self) -> Option<(usize, f64)> {
-        let of_tile = |driven: &'_ Driven<'s, T>| -> Vec<(usize, f64)> {
-            driven.samples.iter().copied().zip(driven.tile.error_ratios().iter().copied()).collect()
-        };
-        self.tiles.iter().flat_map(of_tile).reduce(|a, b| if b.1 > a.1 { b } else { a })
+        let ratios = self.tiles.iter().flat_map(|Driven { tile, samples, .. }| samples.iter().zip(tile.error_ratios()));
+        ratios.map(|(&sample, &ratio)| (sample, ratio)).reduce(|a, b| if b.1 > a.1 { b } else { a })
     }
 }
 

@@ -1,4 +1,5 @@
-//! Statistics of motions that are cut at events, beside their bounds: worst cases, linear sums and root sum squares.
+//! Statistics of simulated motions beside their bounds, where no surrogate is kept: worst cases, linear sums and root
+//! sum squares.
 
 use super::intervals;
 use super::motions;

@@ -35,7 +35,7 @@ const INTERRUPTED: &str = "interrupted before statistics were done";
 /// # Errors
 /// As for any run. Where statistics alone fail, the summary says why.
 pub(super) fn run(description: &Description, shown: usize, options: &Options) -> Result<(Bounds, Summary), RunError> {
-    // Motions that are cut at events leave no surrogate to take linear sums from.
+    // Where no surrogate is kept, linear sums are of the derivatives.
     let derivatives = options.derivatives || shown > 0;
     let asked = Options { methods: options.methods.clone(), derivatives, ..*options };
     // Random motions meet more events than polynomials between them follow: they are not cut.
@@ -63,8 +63,8 @@ pub(super) fn run(description: &Description, shown: usize, options: &Options) ->
     Ok((bounds, summary))
 }
 
-/// Whether a run kept surrogates of all reduced outputs and margins, or motions that are simulated would not have them
-/// either.
+/// Whether a run kept surrogates of all reduced outputs and margins. Of motions that are cut at events, simulated
+/// motions have them else.
 fn has_numbers(description: &Description, kept: &Kept) -> bool {
     let reduced = description.reduced.is_empty() || kept.reduced(description.reduced.len()).is_some();
     let margins = description.requirements.is_empty() || kept.margins().is_some();

@@ -1,5 +1,5 @@
 //! Statistics of simulated motions, each with parameters of their laws and, under random excitations, a realisation of
-//! its own: no surrogate has so many dimensions, and motions that are cut at events leave none over the whole box.
+//! its own: no surrogate has so many dimensions, and reduced outputs of motions that are cut at events may have none.
 
 use rayon::prelude::*;
 
