@@ -49,10 +49,10 @@ fn in_shortest_cut(questions: &Questions, asked: Simulator) -> Result<Simulator,
         return Ok(asked);
     }
     let why = asked.system.formulation.why.clone();
-    let shortest = loop_cuts::shortest(questions, asked, false, |other, best| {
+    let shorter = loop_cuts::shortest(questions, &asked, false, |other, best| {
         Compiled::within(assemble::build(other).ok()?, other.description, enough(best)).ok()
     });
-    Ok(chosen(shortest, why))
+    Ok(chosen(shorter.unwrap_or(asked), why))
 }
 
 /// Without loops: joint coordinates first, whose length tells when absolute ones are given up.
@@ -113,29 +113,31 @@ fn shortest(questions: &Questions, absolute: Simulator, joint: Simulator, start:
         return chosen(absolute, "outputs start elsewhere in joint coordinates".to_owned());
     }
     // The nominal motion is examined only where joint coordinates would be taken, and before other cuts are: of many
-    // loops it takes longer than all else, of few the cuts do.
-    let passes = || start.is_some() && passes_singular(questions, &absolute);
+    // loops it takes longer than all else, of few the cuts do. It is that of the first cut, or of the only one that is
+    // short.
+    let passes = |joint: &Simulator| start.is_some() && passes_singular(questions, joint);
     let singular = "the nominal motion passes singular configurations";
     let is_first_shorter = is_shorter(&joint, &absolute);
-    let cut_best = || {
-        loop_cuts::shortest(questions, joint, true, |other, best| {
+    let cut_better = || {
+        loop_cuts::shortest(questions, &joint, true, |other, best| {
             let system = assemble::in_joint_coordinates(other, None, start).ok()?.ok()?;
             Compiled::within(system, other.description, enough(best)).ok()
         })
     };
-    let joint = if is_first_shorter && rayon::current_num_threads() > 1 {
+    let better = if is_first_shorter && rayon::current_num_threads() > 1 {
         // Singular motions are rare: cuts are seldom compiled for nothing.
-        let (is_singular, joint) = rayon::join(passes, cut_best);
+        let (is_singular, better) = rayon::join(|| passes(&joint), cut_better);
         if is_singular {
             return chosen(absolute, singular.to_owned());
         }
-        joint
-    } else if is_first_shorter && passes() {
+        better
+    } else if is_first_shorter && passes(&joint) {
         return chosen(absolute, singular.to_owned());
     } else {
-        cut_best()
+        cut_better()
     };
-    if !is_first_shorter && is_shorter(&joint, &absolute) && passes() {
+    let joint = better.unwrap_or(joint);
+    if !is_first_shorter && is_shorter(&joint, &absolute) && passes(&joint) {
         return chosen(absolute, singular.to_owned());
     }
     shorter(absolute, joint)
