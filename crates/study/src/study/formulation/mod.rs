@@ -14,10 +14,10 @@ mod loop_cuts;
 mod singular;
 pub mod tuning;
 
-use super::RunError;
+use super::{RunError, first_step, scheme};
 use crate::assemble::{self, FormulationInfo, Questions, System};
 use crate::model::Formulation;
-use crate::simulate::{Assembled, SimulationError, Simulator};
+use crate::simulate::{Assembled, Samples, SimulationError, Simulator};
 
 use candidates::{Candidate, Compiled, asked, because, other_way, where_absolute_are_singular};
 use comparison::starts_alike;
@@ -85,20 +85,35 @@ fn of_trees(questions: &Questions, absolute: System) -> Result<Simulator, RunErr
 
 /// With loops: absolute coordinates first, from whose start joint ones close the loops in the same branch.
 fn of_loops(questions: &Questions, absolute: System) -> Result<Simulator, RunError> {
-    let absolute = match Candidate::<Simulator>::of(absolute, questions, TUNING.operations) {
-        Candidate::Runs(absolute) => absolute,
-        Candidate::Singular(error) => return where_absolute_are_singular(questions).ok_or(error.into()),
-        Candidate::TooLong | Candidate::Refused(_) => return other_way(questions, Formulation::Joint),
+    let given_up = |error: SimulationError| match error {
+        SimulationError::TooLong => other_way(questions, Formulation::Joint),
+        error => where_absolute_are_singular(questions).ok_or(error.into()),
+    };
+    let (scheme, first_step) = (scheme(questions.description), first_step(questions.description));
+    let assembled = match Assembled::within(Samples::All, absolute, scheme, first_step, Some(TUNING.operations)) {
+        Ok(assembled) => assembled,
+        Err(error) => return given_up(error),
+    };
+    let start = assembled.nominal[assembled.start.layout.q.clone()].to_vec();
+    let is_regular = assembled.mobility.singular_at_start.is_empty() && assembled.mobility.redundant.is_empty();
+    let in_joint = |operations: usize| Candidate::in_joint_coordinates(questions, operations, Some(&start));
+    // Joint coordinates need the start alone; only where they take long, the absolute steps tell how long they may.
+    let (absolute, joint) =
+        rayon::join(|| Simulator::of(assembled, scheme, first_step), || is_regular.then(|| in_joint(TUNING.soon)));
+    let absolute = match absolute {
+        Ok(absolute) => absolute,
+        Err(error) => return given_up(error),
     };
     if !absolute.mobility.singular_at_start.is_empty() {
         return Ok(chosen(absolute, "the start is singular".to_owned()));
     }
     // Joint coordinates do not have them, and would not show the undetermined ones.
-    if !absolute.mobility.redundant.is_empty() {
-        return Ok(chosen(absolute, "constraints are redundant".to_owned()));
-    }
-    let start = absolute.nominal[absolute.start.layout.q.clone()].to_vec();
-    Ok(match Candidate::in_joint_coordinates(questions, enough(&absolute), Some(&start))? {
+    let Some(joint) = joint else { return Ok(chosen(absolute, "constraints are redundant".to_owned())) };
+    let joint = match joint? {
+        Candidate::TooLong if enough(&absolute) > TUNING.soon => in_joint(enough(&absolute))?,
+        joint => joint,
+    };
+    Ok(match joint {
         Candidate::Runs(joint) => shortest(questions, absolute, joint, Some(&start)),
         Candidate::Refused(why) => chosen(absolute, why),
         Candidate::TooLong => several_times_shorter(absolute),
