@@ -354,6 +354,23 @@ mod tests {
     }
 
     #[test]
+    fn a_formulation_that_is_known_gives_the_motion_of_one_that_is_chosen() {
+        let description = four_bar();
+        let options = crate::study::Options { threads: Some(1), ..Default::default() };
+        let (_, summary) = crate::study::run(&description, options).unwrap();
+        let known = summary.chosen_formulation.as_ref();
+        assert!(known.is_some_and(|known| known.joint));
+        let of = |formulation| {
+            let interruption = Interruption::default();
+            let options =
+                MotionOptions { threads: Some(1), size: 300_000, interruption, between_events: false, formulation };
+            motion(&description, options).unwrap()
+        };
+        let [known, chosen] = [known, None].map(|formulation| format!("{:?}", of(formulation)));
+        assert_eq!(known, chosen);
+    }
+
+    #[test]
     fn a_small_size_leaves_few_poses_and_says_how_far_off_they_are() {
         let motion = motion(
             &four_bar(),
