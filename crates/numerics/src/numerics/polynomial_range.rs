@@ -187,7 +187,7 @@ impl ExtremaGrid {
         let first = [lowest.1, highest.1];
         for (place, number) in first.into_iter().chain(0..self.reach.len()).enumerate() {
             let reach = self.reach[number];
-            // Written so that what is not finite is looked at.
+            // Written so that NaN is looked at.
             let is_within = found.lower <= reach.lower && reach.upper <= found.upper;
             if is_within || first[..place.min(2)].contains(&number) {
                 continue;

@@ -42,19 +42,19 @@ impl Graph {
     pub fn reachable(&self, roots: &[Expr]) -> Vec<Expr> {
         let Some(last) = roots.iter().max() else { return Vec::new() };
         // A node is made after all that it needs: one look at each, from the last on, finds all. A bit a node.
-        const BITS: usize = u64::BITS as usize;
-        let mut needed = vec![0_u64; last.index() / BITS + 1];
-        roots.iter().for_each(|root| needed[root.index() / BITS] |= 1 << (root.index() % BITS));
+        let bits = u64::BITS as usize;
+        let mut needed = vec![0_u64; last.index() / bits + 1];
+        roots.iter().for_each(|root| needed[root.index() / bits] |= 1 << (root.index() % bits));
         let mut found = Vec::new();
         for word in (0..needed.len()).rev() {
             let mut left = needed[word];
             while left != 0 {
                 let bit = left.ilog2();
-                let expr = Expr((word * BITS) as u32 + bit);
+                let expr = Expr((word * bits) as u32 + bit);
                 found.push(expr);
                 self.node(expr)
                     .children()
-                    .for_each(|child| needed[child.index() / BITS] |= 1 << (child.index() % BITS));
+                    .for_each(|child| needed[child.index() / bits] |= 1 << (child.index() % bits));
                 left = needed[word] & ((1 << bit) - 1);
             }
         }

@@ -12,9 +12,9 @@ use crate::simulate::Simulator;
 use crate::study::formulation::tuning::TUNING;
 
 /// One with another cut than the first, and a shorter step that starts alike, if there is one; `with_roots`, also one
-/// in which bodies behind joints of several axes have coordinates of their own. `compile` makes one of questions that give the cut,
-/// and gives up where it takes many times the operations of the best so far. Redundant constraints and a singular start
-/// depend on the cut, and are left with the first.
+/// in which bodies behind joints of several axes have coordinates of their own. `compile` makes one of questions that
+/// give the cut, and gives up where it takes many times the operations of the best so far. Redundant constraints and a
+/// singular start depend on the cut, and are left with the first.
 pub fn shortest(
     questions: &Questions,
     first: &Simulator,
