@@ -24,6 +24,7 @@ pub(super) fn parts(job: &Job, worst: &[FunctionWitness], summary: &Summary, thr
         size: study::REPORT_SIZE / job.share.max(1),
         interruption: Interruption::new(&interrupt::asked),
         between_events: study::is_between_events(summary),
+        formulation: summary.chosen_formulation.as_ref(),
     };
     let motion = study::report_motion(&job.model, worst, options);
     let motion = motion.map(|mut found| {

@@ -68,6 +68,7 @@ pub use interruption::Interruption;
 pub use modal::is_one_number;
 pub use modes::{ExcitedMode, excited_modes};
 pub use simulator::{Assembled, Simulator};
+pub use start::Samples;
 pub(crate) use start::allowed_residual;
 pub(crate) use statics::Equilibrium;
 pub use step::{Counters, Stepper};

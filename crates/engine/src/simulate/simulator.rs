@@ -51,16 +51,11 @@ pub struct Assembled {
 
 impl Assembled {
     /// Assembles for steps of `h`, with a limit on the number of operations that the start may take. The system keeps
-    /// the limit.
+    /// the limit, and the start is one for these samples.
     ///
     /// # Errors
     /// Where no consistent start exists, the equations are singular there, or the limit is exceeded.
-    pub fn within(system: System, scheme: Scheme, h: f64, operations: Option<usize>) -> Result<Self, SimulationError> {
-        Self::of_samples(Samples::Nominal, system, scheme, h, operations)
-    }
-
-    /// The same with a start for these samples.
-    fn of_samples(
+    pub fn within(
         samples: Samples,
         mut system: System,
         scheme: Scheme,
@@ -210,8 +205,16 @@ impl Simulator {
     /// # Errors
     /// Also where the limit is exceeded.
     pub fn within(system: System, scheme: Scheme, h: f64, operations: Option<usize>) -> Result<Self, SimulationError> {
+        Self::of(Assembled::within(Samples::All, system, scheme, h, operations)?, scheme, h)
+    }
+
+    /// The steps of a mechanism that is assembled for all samples, within the limit that its system has.
+    ///
+    /// # Errors
+    /// Where the equations are singular at the start, or the limit is exceeded.
+    pub fn of(assembled: Assembled, scheme: Scheme, h: f64) -> Result<Self, SimulationError> {
         let Assembled { mut system, start, nominal, mobility, undetermined, shared, equilibrium, vibrations, derived } =
-            Assembled::of_samples(Samples::All, system, scheme, h, operations)?;
+            assembled;
         let samples = pivot_samples(&system, &start.layout, &nominal, h);
         let program = compile(&system, scheme, &mobility.redundant, &samples);
         let program = program.map_err(|none| no_factors(&system, &none))?;

@@ -268,6 +268,7 @@ mod tests {
             alpha: -0.1,
             duration: 1.0,
             is_cut: false,
+            chosen_formulation: None,
             ..Summary::default()
         };
         (bounds, summary)

@@ -254,6 +254,7 @@ mod tests {
                 unresolved_from: None,
             }],
             is_cut: false,
+            chosen_formulation: None,
             ..Summary::default()
         };
         let expected = "slider_crank: 7 absolute coordinates, 6 constraints, 1 degree of freedom

@@ -116,6 +116,8 @@ struct ExtremaGrid {
     /// Bound on the rounding errors of a value, relative to Σ|c|.
     rounding: f64,
     work: Work,
+    /// What values of each row lie within.
+    reach: Vec<Range>,
     even: Vec<f64>,
     odd: Vec<f64>,
 }
@@ -144,6 +146,7 @@ impl ExtremaGrid {
             curvature: phases.iter().map(|phase| 0.5 * phase * phase).collect(),
             rounding: 2.0 * operations as f64 * f64::EPSILON,
             work: Work::default(),
+            reach: Vec::new(),
             even: vec![0.0; half],
             odd: vec![0.0; half],
         }
@@ -163,26 +166,52 @@ impl ExtremaGrid {
         Enclosed { outer, attained: on_grid }
     }
 
-    /// Least and largest value on the grid.
+    /// Least and largest value on the grid. Rows that cannot have one of them are passed over: those in which
+    /// c₀ ± Σ|c| lies between values of the others. The first are those in which it reaches the furthest.
     fn extrema(&mut self, coefficients: &[f64]) -> Range {
-        let mut found = Range { lower: f64::INFINITY, upper: f64::NEG_INFINITY };
         let rows = self.leading.apply(coefficients, &mut self.work);
-        let half = self.last.columns;
-        for row in rows.chunks_exact(self.last.rows) {
-            // C_j(−x) = (−1)^j C_j(x): even and odd terms at x ≥ 0 give the values at x and −x.
-            self.even.fill(0.0);
-            self.odd.fill(0.0);
-            for (j, (&c, cosines)) in row.iter().zip(self.last.entries.chunks_exact(half)).enumerate() {
-                let part = if j % 2 == 0 { &mut self.even } else { &mut self.odd };
-                part.iter_mut().zip(cosines).for_each(|(part, cosine)| *part += c * cosine);
+        let rounding = self.rounding;
+        let reach = |row: &[f64]| {
+            let radius: f64 = row[1..].iter().map(|c| c.abs()).sum();
+            let radius = radius + rounding * (row[0].abs() + radius);
+            Range { lower: row[0] - radius, upper: row[0] + radius }
+        };
+        let (mut lowest, mut highest) = ((f64::INFINITY, 0), (f64::NEG_INFINITY, 0));
+        self.reach.clear();
+        self.reach.extend(rows.chunks_exact(self.last.rows).map(reach));
+        for (number, reach) in self.reach.iter().enumerate() {
+            lowest = if reach.lower < lowest.0 { (reach.lower, number) } else { lowest };
+            highest = if reach.upper > highest.0 { (reach.upper, number) } else { highest };
+        }
+        let mut found = Range { lower: f64::INFINITY, upper: f64::NEG_INFINITY };
+        let first = [lowest.1, highest.1];
+        for (place, number) in first.into_iter().chain(0..self.reach.len()).enumerate() {
+            let reach = self.reach[number];
+            // Written so that NaN is looked at.
+            let is_within = found.lower <= reach.lower && reach.upper <= found.upper;
+            if is_within || first[..place.min(2)].contains(&number) {
+                continue;
             }
-            for (even, odd) in self.even.iter().zip(&self.odd) {
-                let (lower, upper) = (even - odd.abs(), even + odd.abs());
-                found.lower = if lower < found.lower { lower } else { found.lower };
-                found.upper = if upper > found.upper { upper } else { found.upper };
-            }
+            let row = &rows[number * self.last.rows..][..self.last.rows];
+            extend(&mut found, row, &self.last, [&mut self.even, &mut self.odd]);
         }
         found
+    }
+}
+
+/// Extends a range by a row's values along the last axis.
+fn extend(found: &mut Range, row: &[f64], last: &Matrix, [even, odd]: [&mut [f64]; 2]) {
+    // C_j(−x) = (−1)^j C_j(x): even and odd terms at x ≥ 0 give the values at x and −x.
+    even.fill(0.0);
+    odd.fill(0.0);
+    for (j, (&c, cosines)) in row.iter().zip(last.entries.chunks_exact(last.columns)).enumerate() {
+        let part = if j % 2 == 0 { &mut *even } else { &mut *odd };
+        part.iter_mut().zip(cosines).for_each(|(part, cosine)| *part += c * cosine);
+    }
+    for (even, odd) in even.iter().zip(&*odd) {
+        let (lower, upper) = (even - odd.abs(), even + odd.abs());
+        found.lower = if lower < found.lower { lower } else { found.lower };
+        found.upper = if upper > found.upper { upper } else { found.upper };
     }
 }
 
@@ -279,6 +308,18 @@ mod tests {
     }
 
     proptest! {
+        #[test]
+        fn rows_that_are_passed_over_have_no_extremum((orders, c) in polynomial()) {
+            let mut grid = ExtremaGrid::new(&orders, &intervals(&orders).unwrap());
+            let found = grid.extrema(&c);
+            let mut all = Range { lower: f64::INFINITY, upper: f64::NEG_INFINITY };
+            let rows = grid.leading.apply(&c, &mut grid.work);
+            for row in rows.chunks_exact(grid.last.rows) {
+                extend(&mut all, row, &grid.last, [&mut grid.even, &mut grid.odd]);
+            }
+            prop_assert_eq!(found, all);
+        }
+
         #[test]
         fn tight_encloses_and_is_never_wider_than_the_terms((orders, c) in polynomial()) {
             let dense = dense(&orders, 61, &c);

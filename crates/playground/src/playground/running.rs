@@ -54,7 +54,8 @@ pub(super) fn run(reading: Reading, scene: Option<&str>, costly: bool, host: &dy
         .map_err(|error| Unrun { waits: matches!(error, RunError::Costly(_)), why: error.to_string() })?;
     begin("motion for the report");
     let (interruption, between_events) = (Interruption::new(&|| false), study::is_between_events(&summary));
-    let options = MotionOptions { threads: None, size: REPORT_SIZE, interruption, between_events };
+    let formulation = summary.chosen_formulation.as_ref();
+    let options = MotionOptions { threads: None, size: REPORT_SIZE, interruption, between_events, formulation };
     let motion = study::report_motion(&model, &bounds.functions, options).map(|mut found| {
         read_meshes(&mut found.drawing, Path::new(""), MOST_TRIANGLES);
         found

@@ -7,6 +7,7 @@ use super::{
     AnalysisSummary, Band, BlackBoxSummary, Bounds, ChainSummary, Contribution, ExcitationSummary, OutputBounds,
     ReducedSummary, RequirementSummary,
 };
+use crate::assemble::FormulationInfo;
 use crate::grammar::display_unit::DisplayUnit;
 use crate::methods::TooDeep;
 use crate::syntax::Code;
@@ -127,6 +128,10 @@ pub struct Summary {
     /// Whether it ended before it was done, since it was asked to or took too long.
     #[serde(skip)]
     pub is_cut: bool,
+    /// The formulation in which other questions of the model are compiled: where it is one subsystem, of which nothing
+    /// is left out and no bodies move as one.
+    #[serde(skip)]
+    pub chosen_formulation: Option<FormulationInfo>,
 }
 
 impl Summary {

@@ -88,6 +88,12 @@ fn run_all(
     let kept = kept.map(|parts| Kept::of_parts(parts, description.outputs.len()));
     let (mut bounds, mut summary) = Whole::of(description, left_out.to_vec()).merge(ran);
     arrange(description, &mut bounds, &mut summary);
+    if let ([whole], [study]) = (subsystems, studies)
+        && left_out.is_empty()
+        && !whole.merged.contains(&true)
+    {
+        summary.chosen_formulation = Some(study.simulator.system.formulation.clone());
+    }
     Ok((bounds, summary, kept))
 }
 

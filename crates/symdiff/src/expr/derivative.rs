@@ -70,9 +70,7 @@ impl Graph {
         let mut visits = std::mem::take(&mut self.visits);
         let mut matrix = SparseMatrix::zero(rows.len(), by.len());
         for (row, &of) in rows.iter().enumerate() {
-            let order = self.reachable(&[of]);
-            let mut columns: Vec<usize> = order.iter().filter_map(|symbol| column_of.get(symbol).copied()).collect();
-            columns.sort_unstable();
+            let columns = self.columns_below(of, &column_of, &mut visits);
             for column in columns {
                 let value = self.derivative_along(of, by[column], &mut visits);
                 if !self.is_zero(value) {
@@ -82,6 +80,24 @@ impl Graph {
         }
         self.visits = visits;
         matrix
+    }
+
+    /// Columns of the symbols that `of` needs, ascending.
+    fn columns_below(&self, of: Expr, column_of: &FxHashMap<Expr, usize>, visits: &mut Visits) -> Vec<usize> {
+        visits.begin(self.len());
+        visits.stack.push(of);
+        let mut columns = Vec::new();
+        while let Some(expr) = visits.stack.pop() {
+            if visits.is_first(expr) {
+                let node = self.node(expr);
+                if matches!(node, Node::Symbol(_)) {
+                    columns.extend(column_of.get(&expr));
+                }
+                visits.stack.extend(node.children());
+            }
+        }
+        columns.sort_unstable();
+        columns
     }
 
     /// Records the derivatives of nodes that depend on `by`; only nodes above those already recorded are visited.

@@ -32,7 +32,7 @@ impl Graph {
         let zero = self.constant(0.0);
         self.rebuild(roots, |_, node, image| match node {
             Node::Binary(function @ (Binary::Select | Binary::SelectElse), given, value) if given == condition => {
-                Some(if holds == (function == Binary::Select) { image[&value] } else { zero })
+                Some(if holds == (function == Binary::Select) { image[value.index()] } else { zero })
             }
             _ => None,
         })
@@ -40,16 +40,25 @@ impl Graph {
 
     /// All nodes that `roots` need, themselves included, children before parents.
     pub fn reachable(&self, roots: &[Expr]) -> Vec<Expr> {
-        let mut seen = FxHashSet::default();
-        let mut stack = roots.to_vec();
+        let Some(last) = roots.iter().max() else { return Vec::new() };
+        // A node is made after all that it needs: one look at each, from the last on, finds all. A bit a node.
+        let bits = u64::BITS as usize;
+        let mut needed = vec![0_u64; last.index() / bits + 1];
+        roots.iter().for_each(|root| needed[root.index() / bits] |= 1 << (root.index() % bits));
         let mut found = Vec::new();
-        while let Some(expr) = stack.pop() {
-            if seen.insert(expr) {
+        for word in (0..needed.len()).rev() {
+            let mut left = needed[word];
+            while left != 0 {
+                let bit = left.ilog2();
+                let expr = Expr((word * bits) as u32 + bit);
                 found.push(expr);
-                stack.extend(self.node(expr).children());
+                self.node(expr)
+                    .children()
+                    .for_each(|child| needed[child.index() / bits] |= 1 << (child.index() % bits));
+                left = needed[word] & ((1 << bit) - 1);
             }
         }
-        found.sort_unstable();
+        found.reverse();
         found
     }
 
@@ -96,45 +105,48 @@ impl Graph {
     }
 
     /// Rebuilds `roots` with nodes replaced, given the images of the nodes below them.
-    fn rebuild(
-        &mut self,
-        roots: &[Expr],
-        replaced: impl Fn(Expr, Node, &FxHashMap<Expr, Expr>) -> Option<Expr>,
-    ) -> Vec<Expr> {
-        let mut image: FxHashMap<Expr, Expr> = FxHashMap::default();
+    fn rebuild(&mut self, roots: &[Expr], replaced: impl Fn(Expr, Node, &[Expr]) -> Option<Expr>) -> Vec<Expr> {
+        // By node.
+        let mut image = vec![Expr(0); past(roots)];
         for expr in self.reachable(roots) {
             let node = self.node(expr);
             let new = match (replaced(expr, node, &image), node) {
                 (Some(replacement), _) => replacement,
                 (None, Node::Constant(_) | Node::Symbol(_)) => expr,
-                (None, Node::Unary(function, a)) => self.unary(function, image[&a]),
-                (None, Node::Binary(function, a, b)) => self.binary(function, image[&a], image[&b]),
+                (None, Node::Unary(function, a)) => self.unary(function, image[a.index()]),
+                (None, Node::Binary(function, a, b)) => self.binary(function, image[a.index()], image[b.index()]),
             };
-            image.insert(expr, new);
+            image[expr.index()] = new;
         }
-        roots.iter().map(|root| image[root]).collect()
+        roots.iter().map(|root| image[root.index()]).collect()
     }
 
     /// Values of `roots` where each symbol has the value that `value_of` gives it: one pass, in index order, with the
     /// same arithmetic as the tapes.
     pub fn evaluate(&self, roots: &[Expr], mut value_of: impl FnMut(Expr) -> f64) -> Vec<f64> {
-        let mut values: FxHashMap<Expr, f64> = FxHashMap::default();
+        // By node.
+        let mut values = vec![0.0; past(roots)];
         for expr in self.reachable(roots) {
             let value = match self.node(expr) {
                 Node::Constant(bits) => f64::from_bits(bits),
                 Node::Symbol(_) => value_of(expr),
-                Node::Unary(function, a) => functions::unary(function, values[&a]),
+                Node::Unary(function, a) => functions::unary(function, values[a.index()]),
                 // A sum would lose the sign of zero, which instructions keep.
                 Node::Binary(Binary::Add, x, y) if let Some(choice) = self.choice(x, y) => {
                     let [(_, a), (_, b)] = choice.halves;
-                    functions::select(values[&choice.condition], values[&a], values[&b])
+                    functions::select(values[choice.condition.index()], values[a.index()], values[b.index()])
                 }
-                Node::Binary(function, a, b) => functions::binary(function, values[&a], values[&b]),
+                Node::Binary(function, a, b) => functions::binary(function, values[a.index()], values[b.index()]),
             };
-            values.insert(expr, value);
+            values[expr.index()] = value;
         }
-        roots.iter().map(|root| values[root]).collect()
+        roots.iter().map(|root| values[root.index()]).collect()
     }
+}
+
+/// The number of the node after the last of these.
+fn past(roots: &[Expr]) -> usize {
+    roots.iter().max().map_or(0, |last| last.index() + 1)
 }
 
 #[cfg(test)]

@@ -22,20 +22,21 @@ pub fn with_reciprocals(graph: &mut Graph, inputs: &[Input], roots: &[Expr]) -> 
         }
     }
     let one = graph.constant(1.0);
-    let mut image: FxHashMap<Expr, Expr> = FxHashMap::default();
+    // By node.
+    let mut image = vec![one; reached.last().map_or(0, |last| last.index() + 1)];
     for expr in reached {
         let new = match graph.node(expr) {
             Node::Constant(_) | Node::Symbol(_) => expr,
-            Node::Unary(function, a) => graph.unary(function, image[&a]),
+            Node::Unary(function, a) => graph.unary(function, image[a.index()]),
             Node::Binary(Binary::Div, a, b) if divided_by[&b] > 1 || stages.of(b) < stages.of(a) => {
-                let reciprocal = graph.div(one, image[&b]);
-                graph.mul(image[&a], reciprocal)
+                let reciprocal = graph.div(one, image[b.index()]);
+                graph.mul(image[a.index()], reciprocal)
             }
-            Node::Binary(function, a, b) => graph.binary(function, image[&a], image[&b]),
+            Node::Binary(function, a, b) => graph.binary(function, image[a.index()], image[b.index()]),
         };
-        image.insert(expr, new);
+        image[expr.index()] = new;
     }
-    roots.iter().map(|root| image[root]).collect()
+    roots.iter().map(|root| image[root.index()]).collect()
 }
 
 #[cfg(test)]

@@ -88,6 +88,40 @@ pub(crate) fn in_regions(nodes: usize, pending: Vec<Pending>, regions: &Regions)
     steps
 }
 
+/// Who writes what an instruction reads.
+fn written_by<'w>(one: &'w Pending, writer: &'w NodeTable) -> impl Iterator<Item = usize> + 'w {
+    one.read().filter_map(|read| writer.get(read)).map(|writer| writer as usize)
+}
+
+/// The instructions of a window that read what another writes.
+struct Readers {
+    /// Writer after writer, ascending.
+    list: Vec<usize>,
+    /// By writer, where its readers begin; and the end.
+    begin: Vec<usize>,
+}
+
+impl Readers {
+    fn of(window: &[Pending], writer: &NodeTable) -> Self {
+        // Two places further on: what counts readers of a writer becomes where they begin, and then where they end.
+        let mut begin = vec![0; window.len() + 2];
+        window.iter().flat_map(|one| written_by(one, writer)).for_each(|writer| begin[writer + 2] += 1);
+        (2..begin.len()).for_each(|place| begin[place] += begin[place - 1]);
+        let mut list = vec![0; begin[window.len() + 1]];
+        for (index, one) in window.iter().enumerate() {
+            for writer in written_by(one, writer) {
+                list[begin[writer + 1]] = index;
+                begin[writer + 1] += 1;
+            }
+        }
+        Self { list, begin }
+    }
+
+    fn of_writer(&self, index: usize) -> &[usize] {
+        &self.list[self.begin[index]..self.begin[index + 1]]
+    }
+}
+
 /// Brings equal operations together.
 struct Grouping {
     /// Where in the current window a value is written.
@@ -104,13 +138,8 @@ impl Grouping {
                 one.written().for_each(|expr| self.writer.insert(expr, index as u32));
             }
             let mut missing = vec![0_usize; window.len()];
-            let mut readers: Vec<Vec<usize>> = vec![Vec::new(); window.len()];
-            for (index, instruction) in window.iter().enumerate() {
-                for producer in instruction.read().filter_map(|read| self.writer.get(read)) {
-                    missing[index] += 1;
-                    readers[producer as usize].push(index);
-                }
-            }
+            let readers = Readers::of(window, &self.writer);
+            readers.list.iter().for_each(|&index| missing[index] += 1);
             window.iter().flat_map(Pending::written).for_each(|expr| self.writer.remove(expr));
             let mut ready: Vec<(Op, Vec<usize>)> = Vec::new();
             let enqueue = |ready: &mut Vec<(Op, Vec<usize>)>, index: usize| {
@@ -127,7 +156,7 @@ impl Grouping {
                 }
                 for index in std::mem::take(&mut ready[most].1) {
                     grouped.push(window[index].clone());
-                    for &reader in &readers[index] {
+                    for &reader in readers.of_writer(index) {
                         missing[reader] -= 1;
                         if missing[reader] == 0 {
                             enqueue(&mut ready, reader);

@@ -14,6 +14,7 @@ pub(super) use assembly::{Assembly, ConstraintResidual};
 pub(super) use general_position::{guess_state, move_apart, pivot_samples, spread};
 pub use mobility::Mobility;
 pub(super) use mobility::{contradiction, jacobian_rows, mobility, usual_row_sizes};
-pub(super) use open::{Samples, open_start, shared_coordinates};
+pub use open::Samples;
+pub(super) use open::{open_start, shared_coordinates};
 pub(super) use orientation::{Orientation, Oriented};
 pub(super) use rank::{dependent_rows, free_columns, row_independence};

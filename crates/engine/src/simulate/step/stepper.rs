@@ -87,7 +87,8 @@ impl<'p> Stepper<'p> {
     /// [`lane`](Self::lane) without a new allocation.
     pub(in crate::simulate) fn copy_lane(&self, lane: usize, into: &mut Vec<f64>) {
         into.clear();
-        into.extend((0..self.program.layout.registers()).map(|register| self.tile.lane(register)[lane]));
+        let registers = self.tile.block(0..self.program.layout.registers());
+        into.extend(registers.iter().skip(lane).step_by(self.tile.width()));
     }
 
     /// Largest |1/pivot| of a lane's last factors, over the largest that is trusted.

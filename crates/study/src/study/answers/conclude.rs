@@ -259,5 +259,6 @@ fn summary(study: &Study, results: Results, bounds: &Bounds, failures: &[Note]) 
             .then(|| failures.iter().map(|failure| failure.text.as_str()).collect::<Vec<_>>().join("; ")),
         failure_code: failures.iter().find_map(|failure| failure.code),
         is_cut: false,
+        chosen_formulation: None,
     }
 }

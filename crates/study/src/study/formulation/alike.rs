@@ -7,12 +7,12 @@ use crate::compile::Layout;
 use crate::simulate::{Assembled, Simulator};
 use crate::study::RunError;
 
-/// Compiles in the same formulation, so that the steps are the same; in one of their own where the questions cannot be
+/// Compiles in the known formulation, so that the steps are the same; in one of their own where the questions cannot be
 /// answered in it, as reactions of inboard joints.
 ///
 /// # Errors
 /// As for [`compiled`].
-pub fn compiled_alike(questions: &Questions, known: &Simulator) -> Result<Simulator, RunError> {
+pub fn compiled_alike(questions: &Questions, known: &FormulationInfo) -> Result<Simulator, RunError> {
     match alike(questions, known)? {
         Some(system) => Ok(Compiled::of(system, questions.description)?),
         None => compiled(questions),
@@ -24,7 +24,7 @@ pub fn compiled_alike(questions: &Questions, known: &Simulator) -> Result<Simula
 /// # Errors
 /// As for [`compiled`].
 pub fn assembled_alike(questions: &Questions, known: &Simulator) -> Result<Assembled, RunError> {
-    match alike(questions, known)? {
+    match alike(questions, &known.system.formulation)? {
         Some(system) if Layout::of(&system) == known.start.layout => Ok(Assembled {
             system,
             start: known.start.clone(),
@@ -41,8 +41,8 @@ pub fn assembled_alike(questions: &Questions, known: &Simulator) -> Result<Assem
 }
 
 /// The equations for other questions; `None` where the formulation does not allow them.
-fn alike(questions: &Questions, known: &Simulator) -> Result<Option<System>, RunError> {
-    let FormulationInfo { joint, why, cut, closed_from } = &known.system.formulation;
+fn alike(questions: &Questions, known: &FormulationInfo) -> Result<Option<System>, RunError> {
+    let FormulationInfo { joint, why, cut, closed_from } = known;
     let questions = questions.cut_at(cut.clone());
     let built = match joint {
         true => assemble::in_joint_coordinates(&questions, None, closed_from.as_deref())?.ok(),
@@ -64,7 +64,7 @@ mod tests {
             let description = model::load(std::path::Path::new(&path), &[]).unwrap_or_else(|errors| panic!("{errors}"));
             let questions = Questions::of(&description);
             let chosen = compiled(&questions).unwrap();
-            let alike = compiled_alike(&questions, &chosen).unwrap();
+            let alike = compiled_alike(&questions, &chosen.system.formulation).unwrap();
             assert_eq!(alike.system.formulation, chosen.system.formulation, "{name}");
             assert_eq!(alike.program.instructions(), chosen.program.instructions(), "{name}");
             let bits = |values: &[f64]| values.iter().map(|value| value.to_bits()).collect::<Vec<u64>>();

@@ -3,7 +3,7 @@
 use super::tuning::TUNING;
 use crate::assemble::{self, BuildError, FormulationInfo, Questions, System};
 use crate::model::{Description, Formulation};
-use crate::simulate::{Assembled, SimulationError, Simulator};
+use crate::simulate::{Assembled, Samples, SimulationError, Simulator};
 use crate::study::{RunError, first_step, scheme};
 
 /// Something that a system is compiled to: the steps too, or only the start.
@@ -37,7 +37,7 @@ impl Compiled for Assembled {
     }
 
     fn within(system: System, description: &Description, operations: usize) -> Result<Self, SimulationError> {
-        Self::within(system, scheme(description), first_step(description), Some(operations))
+        Self::within(Samples::Nominal, system, scheme(description), first_step(description), Some(operations))
     }
 }
 

@@ -11,44 +11,45 @@ use crate::assemble::{self, Questions};
 use crate::simulate::Simulator;
 use crate::study::formulation::tuning::TUNING;
 
-/// The first, or one with another cut and a shorter step that starts alike; `with_roots`, also one in which bodies
-/// behind joints of several axes have coordinates of their own. `compile` makes one of questions that give the cut,
-/// and gives up where it takes many times the operations of the best so far. Redundant constraints and a singular start
-/// depend on the cut, and are left with the first.
+/// One with another cut than the first, and a shorter step that starts alike, if there is one; `with_roots`, also one
+/// in which bodies behind joints of several axes have coordinates of their own. `compile` makes one of questions that
+/// give the cut, and gives up where it takes many times the operations of the best so far. Redundant constraints and a
+/// singular start depend on the cut, and are left with the first.
 pub fn shortest(
     questions: &Questions,
-    first: Simulator,
+    first: &Simulator,
     with_roots: bool,
     compile: impl Fn(&Questions, &Simulator) -> Option<Simulator>,
-) -> Simulator {
+) -> Option<Simulator> {
     let is_regular = |simulator: &Simulator| {
         simulator.mobility.redundant.is_empty() && simulator.mobility.singular_at_start.is_empty()
     };
-    if !is_regular(&first) {
-        return first;
+    if !is_regular(first) {
+        return None;
     }
-    let mut best = first;
-    let mut tried = BTreeSet::from([best.system.formulation.cut.clone()]);
+    let mut shorter: Option<Simulator> = None;
+    let mut tried = BTreeSet::from([first.system.formulation.cut.clone()]);
     let mut spent = 0;
     'exchanges: loop {
-        let least = instructions(&best);
+        let best = shorter.as_ref().unwrap_or(first);
+        let least = instructions(best);
         let current = questions.cut_at(best.system.formulation.cut.clone());
         let roots = if with_roots { assemble::cuts_of_several_axes(&current) } else { Vec::new() };
         for cut in assemble::other_cuts(&current).into_iter().chain(roots) {
             if spent + least > TUNING.cut_instructions {
-                return best;
+                return shorter;
             }
             if !tried.insert(cut.clone()) {
                 continue;
             }
-            let other = compile(&questions.cut_at(cut), &best);
+            let other = compile(&questions.cut_at(cut), best);
             spent += other.as_ref().map_or(least, instructions);
-            let shorter = |other: &Simulator| instructions(other) < least && is_regular(other);
-            if let Some(other) = other.filter(|other| shorter(other) && starts_alike(&best, other)) {
-                best = other;
+            let is_shorter = |other: &Simulator| instructions(other) < least && is_regular(other);
+            if let Some(other) = other.filter(|other| is_shorter(other) && starts_alike(best, other)) {
+                shorter = Some(other);
                 continue 'exchanges;
             }
         }
-        return best;
+        return shorter;
     }
 }

@@ -14,10 +14,10 @@ mod loop_cuts;
 mod singular;
 pub mod tuning;
 
-use super::RunError;
+use super::{RunError, first_step, scheme};
 use crate::assemble::{self, FormulationInfo, Questions, System};
 use crate::model::Formulation;
-use crate::simulate::{Assembled, SimulationError, Simulator};
+use crate::simulate::{Assembled, Samples, SimulationError, Simulator};
 
 use candidates::{Candidate, Compiled, asked, because, other_way, where_absolute_are_singular};
 use comparison::starts_alike;
@@ -49,10 +49,10 @@ fn in_shortest_cut(questions: &Questions, asked: Simulator) -> Result<Simulator,
         return Ok(asked);
     }
     let why = asked.system.formulation.why.clone();
-    let shortest = loop_cuts::shortest(questions, asked, false, |other, best| {
+    let shorter = loop_cuts::shortest(questions, &asked, false, |other, best| {
         Compiled::within(assemble::build(other).ok()?, other.description, enough(best)).ok()
     });
-    Ok(chosen(shortest, why))
+    Ok(chosen(shorter.unwrap_or(asked), why))
 }
 
 /// Without loops: joint coordinates first, whose length tells when absolute ones are given up.
@@ -85,20 +85,35 @@ fn of_trees(questions: &Questions, absolute: System) -> Result<Simulator, RunErr
 
 /// With loops: absolute coordinates first, from whose start joint ones close the loops in the same branch.
 fn of_loops(questions: &Questions, absolute: System) -> Result<Simulator, RunError> {
-    let absolute = match Candidate::<Simulator>::of(absolute, questions, TUNING.operations) {
-        Candidate::Runs(absolute) => absolute,
-        Candidate::Singular(error) => return where_absolute_are_singular(questions).ok_or(error.into()),
-        Candidate::TooLong | Candidate::Refused(_) => return other_way(questions, Formulation::Joint),
+    let given_up = |error: SimulationError| match error {
+        SimulationError::TooLong => other_way(questions, Formulation::Joint),
+        error => where_absolute_are_singular(questions).ok_or(error.into()),
+    };
+    let (scheme, first_step) = (scheme(questions.description), first_step(questions.description));
+    let assembled = match Assembled::within(Samples::All, absolute, scheme, first_step, Some(TUNING.operations)) {
+        Ok(assembled) => assembled,
+        Err(error) => return given_up(error),
+    };
+    let start = assembled.nominal[assembled.start.layout.q.clone()].to_vec();
+    let is_regular = assembled.mobility.singular_at_start.is_empty() && assembled.mobility.redundant.is_empty();
+    let in_joint = |operations: usize| Candidate::in_joint_coordinates(questions, operations, Some(&start));
+    // Joint coordinates need the start alone; only where they take long, the absolute steps tell how long they may.
+    let (absolute, joint) =
+        rayon::join(|| Simulator::of(assembled, scheme, first_step), || is_regular.then(|| in_joint(TUNING.soon)));
+    let absolute = match absolute {
+        Ok(absolute) => absolute,
+        Err(error) => return given_up(error),
     };
     if !absolute.mobility.singular_at_start.is_empty() {
         return Ok(chosen(absolute, "the start is singular".to_owned()));
     }
     // Joint coordinates do not have them, and would not show the undetermined ones.
-    if !absolute.mobility.redundant.is_empty() {
-        return Ok(chosen(absolute, "constraints are redundant".to_owned()));
-    }
-    let start = absolute.nominal[absolute.start.layout.q.clone()].to_vec();
-    Ok(match Candidate::in_joint_coordinates(questions, enough(&absolute), Some(&start))? {
+    let Some(joint) = joint else { return Ok(chosen(absolute, "constraints are redundant".to_owned())) };
+    let joint = match joint? {
+        Candidate::TooLong if enough(&absolute) > TUNING.soon => in_joint(enough(&absolute))?,
+        joint => joint,
+    };
+    Ok(match joint {
         Candidate::Runs(joint) => shortest(questions, absolute, joint, Some(&start)),
         Candidate::Refused(why) => chosen(absolute, why),
         Candidate::TooLong => several_times_shorter(absolute),
@@ -113,29 +128,31 @@ fn shortest(questions: &Questions, absolute: Simulator, joint: Simulator, start:
         return chosen(absolute, "outputs start elsewhere in joint coordinates".to_owned());
     }
     // The nominal motion is examined only where joint coordinates would be taken, and before other cuts are: of many
-    // loops it takes longer than all else, of few the cuts do.
-    let passes = || start.is_some() && passes_singular(questions, &absolute);
+    // loops it takes longer than all else, of few the cuts do. It is that of the first cut, or of the only one that is
+    // short.
+    let passes = |joint: &Simulator| start.is_some() && passes_singular(questions, joint);
     let singular = "the nominal motion passes singular configurations";
     let is_first_shorter = is_shorter(&joint, &absolute);
-    let cut_best = || {
-        loop_cuts::shortest(questions, joint, true, |other, best| {
+    let cut_better = || {
+        loop_cuts::shortest(questions, &joint, true, |other, best| {
             let system = assemble::in_joint_coordinates(other, None, start).ok()?.ok()?;
             Compiled::within(system, other.description, enough(best)).ok()
         })
     };
-    let joint = if is_first_shorter && rayon::current_num_threads() > 1 {
+    let better = if is_first_shorter && rayon::current_num_threads() > 1 {
         // Singular motions are rare: cuts are seldom compiled for nothing.
-        let (is_singular, joint) = rayon::join(passes, cut_best);
+        let (is_singular, better) = rayon::join(|| passes(&joint), cut_better);
         if is_singular {
             return chosen(absolute, singular.to_owned());
         }
-        joint
-    } else if is_first_shorter && passes() {
+        better
+    } else if is_first_shorter && passes(&joint) {
         return chosen(absolute, singular.to_owned());
     } else {
-        cut_best()
+        cut_better()
     };
-    if !is_first_shorter && is_shorter(&joint, &absolute) && passes() {
+    let joint = better.unwrap_or(joint);
+    if !is_first_shorter && is_shorter(&joint, &absolute) && passes(&joint) {
         return chosen(absolute, singular.to_owned());
     }
     shorter(absolute, joint)

@@ -35,3 +35,58 @@ pub fn passes_singular(questions: &Questions, simulator: &Simulator) -> bool {
     }
     false
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::candidates::Compiled;
+    use super::*;
+    use crate::assemble;
+    use crate::model::{self, Description};
+
+    /// In absolute coordinates, and in joint ones from the same start.
+    fn passes(description: &Description) -> [bool; 2] {
+        let questions = Questions::of(description);
+        let absolute = assemble::in_absolute_coordinates(&questions).unwrap();
+        let absolute = <Simulator as Compiled>::of(absolute, description).unwrap();
+        let start = &absolute.nominal[absolute.start.layout.q.clone()];
+        let joint = assemble::in_joint_coordinates(&questions, None, Some(start)).unwrap().unwrap();
+        let joint = <Simulator as Compiled>::of(joint, description).unwrap();
+        [absolute, joint].map(|simulator| passes_singular(&questions, &simulator))
+    }
+
+    /// A parallelogram that swings through its flat position, by its weight, or turns through it; before that, and with
+    /// a rod that is a little longer, it is regular.
+    #[test]
+    fn joint_coordinates_see_the_singular_configurations_of_absolute_ones() {
+        let linkage = |rod: f64, rate: f64, duration: f64| {
+            let text = format!(
+                "bodies:
+  ground: {{ points: {{ b: [2, 0] }} }}
+  one: {{ mass: 1, inertia: 0.1, points: {{ A: [0, 0], B: [1, 0] }} }}
+  two: {{ mass: 1, inertia: 0.1, points: {{ A: [0, 0], B: [1, 0] }} }}
+  rod: {{ mass: 1, inertia: 0.3, points: {{ A: [0, 0], B: [{rod}, 0] }} }}
+joints:
+  p: {{ revolute: [ground, one.A] }}
+  q: {{ revolute: [ground.b, two.A] }}
+  r: {{ revolute: [one.B, rod.A] }}
+  s: {{ revolute: [two.B, rod.B] }}
+effects: {{ weight: {{ gravity: {{ acceleration: [0, -9.81] }} }} }}
+initial: {{ one.angle: 1.2, one.angular_velocity: {rate} }}
+outputs: {{ a: one.angle }}
+simulation: {{ duration: {duration}, step: 1e-3, output_step: 0.02 }}
+"
+            );
+            model::load_str("linkage.yaml", &text, &[]).unwrap_or_else(|errors| panic!("{errors}"))
+        };
+        for (rod, rate, duration, expected) in
+            [(2.0, -3.0, 0.2, false), (2.0, -3.0, 1.0, true), (2.0, 0.0, 1.5, true), (2.01, -3.0, 1.0, false)]
+        {
+            assert_eq!(passes(&linkage(rod, rate, duration)), [expected; 2], "{rod} {rate} {duration}");
+        }
+        for name in ["slider_crank", "four_bar", "quick_return", "spatial_four_bar"] {
+            let path = format!("{}/../../models/{name}.yaml", env!("CARGO_MANIFEST_DIR"));
+            let description = model::load(std::path::Path::new(&path), &[]).unwrap_or_else(|errors| panic!("{errors}"));
+            assert_eq!(passes(&description), [false; 2], "{name}");
+        }
+    }
+}

@@ -40,7 +40,9 @@ impl SimulatedForces {
             return None;
         }
         let numbers = outputs.0.len();
-        let mut asking = MotionRows::asking(description, outputs, Some(&others.simulator), others.interruption).ok()?;
+        let mut asking =
+            MotionRows::asking(description, outputs, Some(&others.simulator.system.formulation), others.interruption)
+                .ok()?;
         asking.between_events = others.between_events;
         let mut rows: Vec<DrawingValues> = Vec::new();
         let nominal = [asking.domain.nominal.clone()];

@@ -16,6 +16,7 @@ mod worst;
 use super::drawing::asked::{AskedBody, DrawingOutputs, DrawingValues};
 use super::drawing::{drawn, extent, has_ground};
 use super::{RunError, caught, pool};
+use crate::assemble::FormulationInfo;
 use crate::model::Description;
 use crate::numerics::{Sample, SparseWork, SurrogateWork};
 use crate::results::{
@@ -45,6 +46,8 @@ pub struct MotionOptions<'a> {
     pub interruption: Interruption<'a>,
     /// Whether motions are cut at events, as [`is_between_events`] tells of a run.
     pub between_events: bool,
+    /// The formulation that was chosen for the model, where it is known: [`Summary::chosen_formulation`].
+    pub formulation: Option<&'a FormulationInfo>,
 }
 
 /// Whether the motions of a run were cut at events.
@@ -79,7 +82,7 @@ pub fn report_motion(
 fn motion(description: &Description, options: MotionOptions) -> Result<Motion, RunError> {
     let pool = pool(options.threads)?;
     pool.install(|| {
-        let mut posed = Posed::compile(description, options.interruption)?;
+        let mut posed = Posed::compile(description, options.formulation, options.interruption)?;
         posed.rows.between_events = options.between_events;
         posed.simulate(description, options.size)
     })
@@ -102,12 +105,16 @@ struct Recorded {
 }
 
 impl<'a> Posed<'a> {
-    pub(super) fn compile(description: &Description, interruption: Interruption<'a>) -> Result<Self, RunError> {
+    pub(super) fn compile(
+        description: &Description,
+        formulation: Option<&FormulationInfo>,
+        interruption: Interruption<'a>,
+    ) -> Result<Self, RunError> {
         let mut asked = DrawingOutputs::default();
         let bodies = description.bodies.iter().enumerate();
         let bodies: Vec<AskedBody> = bodies.map(|(index, body)| asked.body(description, index, body)).collect();
         Ok(Self {
-            rows: MotionRows::asking(description, asked, None, interruption)?,
+            rows: MotionRows::asking(description, asked, formulation, interruption)?,
             bodies,
             spatial: description.space.spatial,
         })
@@ -304,7 +311,7 @@ mod tests {
     fn poses_come_through_the_same_tapes() {
         let description = four_bar();
         let whole = crate::study::formulation::compiled(&crate::assemble::Questions::of(&description)).unwrap().program;
-        let posed = Posed::compile(&description, Interruption::default()).unwrap().rows.simulator.program;
+        let posed = Posed::compile(&description, None, Interruption::default()).unwrap().rows.simulator.program;
         let steps = |program: &crate::compile::Program| {
             [program.step_size(), program.step(), program.factor(), program.correct(), program.advance()]
                 .map(|tape| tape.len())
@@ -322,6 +329,7 @@ mod tests {
                 size: 300_000,
                 interruption: Interruption::default(),
                 between_events: false,
+                formulation: None,
             },
         )
         .unwrap();
@@ -337,6 +345,7 @@ mod tests {
                 size: 300_000,
                 interruption: Interruption::default(),
                 between_events: false,
+                formulation: None,
             },
         )
         .unwrap();
@@ -345,10 +354,33 @@ mod tests {
     }
 
     #[test]
+    fn a_formulation_that_is_known_gives_the_motion_of_one_that_is_chosen() {
+        let description = four_bar();
+        let options = crate::study::Options { threads: Some(1), ..Default::default() };
+        let (_, summary) = crate::study::run(&description, options).unwrap();
+        let known = summary.chosen_formulation.as_ref();
+        assert!(known.is_some_and(|known| known.joint));
+        let of = |formulation| {
+            let interruption = Interruption::default();
+            let options =
+                MotionOptions { threads: Some(1), size: 300_000, interruption, between_events: false, formulation };
+            motion(&description, options).unwrap()
+        };
+        let [known, chosen] = [known, None].map(|formulation| format!("{:?}", of(formulation)));
+        assert_eq!(known, chosen);
+    }
+
+    #[test]
     fn a_small_size_leaves_few_poses_and_says_how_far_off_they_are() {
         let motion = motion(
             &four_bar(),
-            MotionOptions { threads: Some(1), size: 1, interruption: Interruption::default(), between_events: false },
+            MotionOptions {
+                threads: Some(1),
+                size: 1,
+                interruption: Interruption::default(),
+                between_events: false,
+                formulation: None,
+            },
         )
         .unwrap();
         assert_eq!((motion.times.len(), motion.rows), (TUNING.fewest_poses, 201));

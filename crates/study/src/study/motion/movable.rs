@@ -23,7 +23,7 @@ impl<'a> Movable<'a> {
     /// # Errors
     /// Where the mechanism cannot be built or assembled.
     pub fn new(description: &'a Description, interruption: Interruption<'a>) -> Result<Self, RunError> {
-        let posed = Posed::compile(description, interruption)?;
+        let posed = Posed::compile(description, None, interruption)?;
         let drawing = posed.drawn(description, None)?;
         Ok(Self { description, posed, drawing })
     }

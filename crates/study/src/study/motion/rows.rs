@@ -8,7 +8,7 @@ use super::super::drawing::asked::{DrawingOutputs, DrawingValues};
 use super::super::stepping::StepPlan;
 use super::super::{RunError, formulation};
 use super::tuning::TUNING;
-use crate::assemble::Questions;
+use crate::assemble::{FormulationInfo, Questions};
 use crate::model::{Analysis, Description, ModesRequest, Stepping};
 use crate::numerics::{ParameterBox, Sample};
 use crate::simulate::{
@@ -46,12 +46,11 @@ fn controlling(samples: &[Sample]) -> &[Sample] {
 }
 
 impl<'a> MotionRows<'a> {
-    /// Asks something, until it is interrupted. `known`: the model's program for other questions, if there is one,
-    /// whose formulation is taken.
+    /// Asks something, until it is interrupted. `known`: the formulation that was chosen for the model, if one was.
     pub(super) fn asking(
         description: &Description,
         asked: DrawingOutputs,
-        known: Option<&Simulator>,
+        known: Option<&FormulationInfo>,
         interruption: Interruption<'a>,
     ) -> Result<Self, RunError> {
         // Responses are between outputs that are not asked here.
@@ -272,6 +271,7 @@ simulation: { duration: 2, step: 1e-3, output_step: 0.02 }
             size: 300_000,
             interruption: Interruption::default(),
             between_events: true,
+            formulation: None,
         };
         let motion = report_motion(&description, &[], options).unwrap();
         assert!(motion.samples.len() > 8 && motion.stopped == 0);

@@ -50,7 +50,7 @@ fn worst(
     if witness.replay(&mut replayed).is_err() {
         return Ok(None);
     }
-    let posed = Posed::compile(&replayed, options.interruption)?;
+    let posed = Posed::compile(&replayed, None, options.interruption)?;
     let nominal = [posed.rows.domain.nominal.clone()];
     let (times, mut recorded) = posed.record(&replayed, &motion.drawing, &nominal)?;
     let Recorded { rows, points, .. } = recorded.swap_remove(0);
