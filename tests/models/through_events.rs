@@ -112,7 +112,7 @@ fn a_dissipating_contact_is_as_another_integrator_has_it() {
         let [a, b] = [f64::from(index % 5) / 2.0 - 1.0, f64::from(index / 5) / 2.0 - 1.0];
         let (height, d) = (1.0 + 0.02 * a, 0.1 * (1.0 + 0.05 * b));
         let rate = |_: f64, [y, v]: [f64; 2]| [v, -9.81 + 1e5 * (-y).max(0.0) * (1.0 - d * v)];
-        let motion = dormand_prince(rate, [height, 0.0], 0.02, bounds.times.len(), 1e-12);
+        let motion = dormand_prince(rate, [height, 0.0], 0.02, bounds.times.len(), 1e-14);
         widen(&mut truths, motion);
     }
     let row = |t: f64| (t / 0.02).round() as usize;
@@ -589,7 +589,7 @@ fn four_parameters_take_few_simulations() {
         let side = |bit: usize| if corner == 16 { 1.0 } else { 0.95 + 0.1 * f64::from(corner >> bit & 1) };
         let (height, d, stiffness) = (side(0), 0.1 * side(1), 1e5 * side(2) / side(3));
         let rate = |_: f64, [y, v]: [f64; 2]| [v, -9.81 + stiffness * (-y).max(0.0) * (1.0 - d * v)];
-        let motion = dormand_prince(rate, [height, 0.0], 0.02, bounds.times.len(), 1e-11);
+        let motion = dormand_prince(rate, [height, 0.0], 0.02, bounds.times.len(), 1e-14);
         widen(&mut truths, motion);
     }
     let row = |t: f64| (t / 0.02).round() as usize;
