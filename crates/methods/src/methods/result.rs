@@ -20,6 +20,8 @@ pub struct MethodResult {
     pub between: Vec<Vec<Range>>,
     /// The surrogate's error, by output and row.
     pub surrogate: Vec<Vec<f64>>,
+    /// Whether that is told row by row at all samples, so that it says nothing of the rows behind.
+    pub is_told_at_rows: bool,
     /// The time steps' error where the method knows it better than the validation samples' outputs do; else NaN.
     pub steps: Vec<Vec<f64>>,
     /// By output and row, where known.
@@ -159,6 +161,7 @@ impl BandBuilder {
             bands: self.bands,
             between: Vec::new(),
             surrogate: self.surrogate,
+            is_told_at_rows: false,
             steps: self.steps,
             sensitivities: self.sensitivities,
             reached,

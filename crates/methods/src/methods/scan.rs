@@ -2,6 +2,7 @@
 //! the outputs may go beyond them between the samples.
 
 use super::BoundsRequest;
+use super::chebyshev::segments;
 use super::ensemble::{Ensemble, EnsembleError};
 use super::registry::{About, BoundingMethod, CostCurve, Refusal, Registered, Varied};
 use super::request::{self, MOST_SIMULATIONS, Problem};
@@ -121,12 +122,20 @@ impl BoundingMethod for Scan {
         let grid = ScanGrid::new(&self.points);
         let (outputs, rows) = (ensemble.outputs(), ensemble.rows());
         let (bounds, total) = ensemble.scan(&grid)?;
+        let told = segments::beside_scan(ensemble, grid.len(), validation)?;
         let mut bands = BandBuilder::new(outputs, rows);
         for (row, output) in (0..rows).flat_map(|row| (0..outputs).map(move |output| (row, output))) {
             let range = bounds.range(row, output);
             let outside = validation.direct.at(row, output).into_iter().map(|value| range.distance(value));
-            bands.set(row, output, range, largest(outside.chain([bounds.error(row, output)])));
+            let beyond = told.as_ref().map(|told| {
+                let other = told.bands[output][row];
+                largest([range.lower - other.lower, range.upper - other.upper]) + told.surrogate[output][row]
+            });
+            // A sample that is no number stays one.
+            let known = beyond.filter(|beyond| !beyond.is_nan() && !bounds.error(row, output).is_nan());
+            bands.set(row, output, range, largest(outside.chain([known.unwrap_or(bounds.error(row, output))])));
         }
-        Ok(bands.finish(grid.len(), total))
+        let result = bands.finish(grid.len() + told.as_ref().map_or(0, |told| told.simulations), total);
+        Ok(MethodResult { is_told_at_rows: told.is_some(), ..result })
     }
 }

@@ -79,26 +79,35 @@ impl BandError {
     /// is how far the output ranges at all, zero where it is at rest; what exceeds it is not resolved. Without one, a
     /// band is lost from where its surrogate no longer follows the response.
     pub fn new(ranges: &[Range], surrogate: &[f64], time: &[f64], span: f64, tolerance: Option<f64>) -> Self {
-        let surrogate = held_up(surrogate, SAFETY_OF_SURROGATE);
-        let time = held_up(&envelope(time), SAFETY_OF_STEPS);
+        let surrogate = held_up(surrogate, SAFETY_OF_SURROGATE, TUNING.of_largest);
+        let mut all = Self::of(surrogate, ranges, time, span, tolerance);
+        if tolerance.is_none() {
+            let first = all.unresolved_from().unwrap_or(ranges.len());
+            all.unresolved[first..].fill(true);
+            all.coarse =
+                all.unresolved.iter().zip(&all.total).map(|(&flag, total)| flag && total.is_finite()).collect();
+        }
+        all
+    }
+
+    /// The same where the surrogate's errors are told row by row: what is large or lost within a contact says nothing
+    /// of the rows behind it.
+    pub fn told(ranges: &[Range], surrogate: &[f64], time: &[f64], span: f64, tolerance: Option<f64>) -> Self {
+        Self::of(held_up(surrogate, SAFETY_OF_SURROGATE, 0.0), ranges, time, span, tolerance)
+    }
+
+    fn of(surrogate: Vec<f64>, ranges: &[Range], time: &[f64], span: f64, tolerance: Option<f64>) -> Self {
+        let time = held_up(&envelope(time), SAFETY_OF_STEPS, TUNING.of_largest);
         let total: Vec<f64> = surrogate.iter().zip(&time).map(|(surrogate, time)| surrogate + time).collect();
-        let mut lost = false;
-        let mut unresolved = Vec::with_capacity(total.len());
-        for (row, range) in ranges.iter().enumerate() {
+        let is_unresolved = |(row, range): (usize, &Range)| {
             // Written so that NaN is not resolved.
             let at_rest = span == 0.0 && !total[row].is_nan();
             let small = |share: f64| total[row] <= share * span || at_rest;
-            unresolved.push(match tolerance {
-                Some(tolerance) => !small(tolerance),
-                None => {
-                    // However narrow the band is: of what nothing varies, rounding is all that there is.
-                    let follows =
-                        surrogate[row] <= (TUNING.lost * range.width()).max(TUNING.small_error * span) || at_rest;
-                    lost |= !(follows && small(TUNING.far_off));
-                    lost
-                }
-            });
-        }
+            // However narrow the band is: of what nothing varies, rounding is all that there is.
+            let follows = surrogate[row] <= (TUNING.lost * range.width()).max(TUNING.small_error * span) || at_rest;
+            !tolerance.map_or(follows && small(TUNING.far_off), small)
+        };
+        let unresolved: Vec<bool> = ranges.iter().enumerate().map(is_unresolved).collect();
         // An error that is not finite has no known size.
         let coarse =
             unresolved.iter().zip(&total).map(|(&unresolved, total)| unresolved && total.is_finite()).collect();
@@ -151,15 +160,14 @@ impl BandError {
     }
 }
 
-/// Estimates with their safety, none far below those beside and before it.
-fn held_up(estimates: &[f64], safety: f64) -> Vec<f64> {
+/// Estimates with their safety, none far below those beside it, and a share of the largest before it.
+fn held_up(estimates: &[f64], safety: f64, of_largest: f64) -> Vec<f64> {
     let mut lasting = 0.0_f64;
     let held = |row: usize| {
         let beside = [row.wrapping_sub(1), row + 1].map(|row| estimates.get(row).copied().unwrap_or(0.0));
         lasting = lasting.max(estimates[row]);
         // `max` passes over NaN.
-        let least =
-            (TUNING.of_neighbour * beside[0]).max(TUNING.of_neighbour * beside[1]).max(TUNING.of_largest * lasting);
+        let least = (TUNING.of_neighbour * beside[0]).max(TUNING.of_neighbour * beside[1]).max(of_largest * lasting);
         safety * if estimates[row] < least { least } else { estimates[row] }
     };
     (0..estimates.len()).map(held).collect()
@@ -193,6 +201,10 @@ mod tests {
         let ranges = vec![Range { lower: 0.0, upper: 1.0 }; 6];
         let follows = BandError::new(&ranges, &[0.01; 6], &[0.0; 6], 1.0, None);
         assert_eq!(follows.unresolved_from(), None);
+        let peak = [1e-9, 1e-2, 1e-9, 1e-9];
+        let rows = [ranges[0]; 4];
+        let [kept, told] = [BandError::new, BandError::told].map(|of| of(&rows, &peak, &[0.0; 4], 1.0, None).total[3]);
+        assert!(told == 2e-9 && kept == 2.0 * TUNING.of_largest * 1e-2);
         let lost = BandError::new(&ranges, &[0.0, 0.0, 0.0, 0.6, 0.0, 0.0], &[0.0; 6], 1.0, None);
         assert_eq!(lost.unresolved, [false, false, true, true, true, true]);
         let unknown = BandError::new(&ranges, &[0.0, 0.0, 0.0, f64::NAN, 0.0, 0.0], &[0.0; 6], 1.0, None);

@@ -94,6 +94,7 @@ pub fn segment_jets(
         }
         let mut nodes = pass(&mut motion, &state, steps);
         let mut is_solved = event.is_none();
+        let mut is_known = is_solved;
         for _ in 0..TUNING.corrections_of_instant {
             let Some(event) = event.filter(|_| !is_solved) else { break };
             let change = watch.change(&motion.closure, event.switch, TUNING.beyond_event * duration);
@@ -104,8 +105,10 @@ pub fn segment_jets(
                 return Ok(None);
             }
             is_solved = first <= TUNING.located * duration && others <= TUNING.rounded_instant * duration;
+            // Corrections of an instant end in rounding of the switch, which may be larger.
+            is_known = first.max(others) <= TUNING.rounded_instant * duration;
         }
-        if !is_solved {
+        if !is_known {
             return Ok(None);
         }
         motion.begin.iter_mut().zip(&motion.length).for_each(|(begin, length)| *begin += length);

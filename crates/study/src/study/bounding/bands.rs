@@ -54,7 +54,8 @@ pub fn bands(study: &Study, bounded: &Bounded, output: usize, rows: usize) -> Ve
                 span = span.max(found[row].width());
             }
         }
-        let with = |surrogate: &[f64]| BandError::new(&ranges, surrogate, &time, span, study.request.tolerance);
+        let of_rows = if outcome.result.is_told_at_rows { BandError::told } else { BandError::new };
+        let with = |surrogate: &[f64]| of_rows(&ranges, surrogate, &time, span, study.request.tolerance);
         let surrogate = &surrogate[..];
         let mut error = with(surrogate);
         // The nominal simulation has steps, which the motion that is proven does not have.

@@ -99,6 +99,12 @@ impl Level {
         (1..=highest).filter_map(of_degree).min_by(|a, b| a.error.total_cmp(&b.error))
     }
 
+    /// Whose zero is where an axis is at its middle.
+    fn along(axis: usize, k: usize) -> Self {
+        let exponents = (0..k).map(|other| u8::from(other == axis)).collect();
+        Self { powers: Powers(vec![exponents]), coefficients: vec![1.0], error: 0.0 }
+    }
+
     /// How far its zero may be from the true one, in its own units.
     pub fn error(&self) -> f64 {
         self.error
@@ -112,6 +118,11 @@ impl Level {
 }
 
 impl End {
+    /// The plane at which an axis is at some ξ; the part is where this is above it (1), or below (−1).
+    pub fn across(axis: usize, at: f64, sign: f64, k: usize) -> Self {
+        Self { level: Level::along(axis, k), sign, offset: sign * at }
+    }
+
     /// Distance from the surface, in the level's units; negative beyond it.
     pub fn margin(&self, xi: &[f64]) -> f64 {
         self.sign * self.level.at(xi) - self.offset
@@ -150,6 +161,15 @@ impl Basis {
             Self::Grid(basis) => basis.len(),
             Self::Fitted(fitted) => fitted.len(),
             Self::Taylor { monomials, .. } => monomials.len(),
+        }
+    }
+
+    /// Highest degree in an axis.
+    pub fn degree(&self) -> usize {
+        match self {
+            Self::Grid(basis) => basis.orders().iter().copied().max().map_or(0, usize::from),
+            Self::Fitted(fitted) => fitted.powers.0.iter().flatten().copied().max().map_or(0, usize::from),
+            Self::Taylor { monomials, .. } => monomials.order(),
         }
     }
 

@@ -5,11 +5,13 @@
 //! programme in a trust region that is as narrow across these surfaces as it has to be: the steepest way that leaves
 //! neither the box nor the segment. Then it is moved to the surface that it was to reach.
 
+use super::ends::{Ends, Rival};
+use super::is_corner;
 use super::row::SegmentRow;
 use super::seeds::Lattice;
 use super::surrogate::Point;
 use super::tuning::TUNING;
-use crate::numerics::{Extent, Range};
+use crate::numerics::{Extent, Range, largest};
 
 /// A place on the way to an extreme.
 struct Climb {
@@ -39,33 +41,92 @@ struct Move {
     of_margins: Vec<Vec<f64>>,
 }
 
-/// The outputs' ranges, with the places of their ends.
-pub(super) fn extents(row: &SegmentRow, lattice: &Lattice) -> Vec<Extent> {
-    let mut climbs = begun(row, lattice);
+/// Where the search begins: places in their segments, and the outputs there (output, place).
+#[derive(Default)]
+struct Seeds {
+    places: Vec<(usize, Point)>,
+    values: Vec<f64>,
+}
+
+/// The outputs' ranges, with the places of their ends and their errors.
+pub(super) fn ends(row: &SegmentRow, lattice: &Lattice) -> Vec<Ends> {
+    let (seeds, mut climbs) = begun(row, lattice);
     for _ in 0..TUNING.moves {
         if !step(row, &mut climbs) {
             break;
         }
     }
     TUNING.shares_of_ridge.iter().for_each(|&share| across(row, &mut climbs, share));
-    let of_output = |output: usize| {
-        let best = |sign: f64| {
-            let own = climbs.iter().filter(|climb| climb.output == output && climb.sign == sign);
-            own.reduce(|a, b| if sign * b.value > sign * a.value { b } else { a })
-        };
-        match (best(-1.0), best(1.0)) {
-            (Some(least), Some(most)) => {
-                let range = Range { lower: least.value, upper: most.value };
-                Extent::at(range, 0.0, [least, most].map(|climb| climb.point.xi.clone()))
-            }
-            _ => Extent::unknown(row.domain.dimension()),
-        }
+    let best = |output: usize, sign: f64| {
+        let own = climbs.iter().filter(|climb| climb.output == output && climb.sign == sign);
+        own.reduce(|a, b| if sign * b.value > sign * a.value { b } else { a })
     };
-    (0..row.outputs).map(of_output).collect()
+    let of_outputs: Vec<[Option<&Climb>; 2]> =
+        (0..row.outputs).map(|output| [best(output, -1.0), best(output, 1.0)]).collect();
+    let extent = |found: &[Option<&Climb>; 2]| match found {
+        [Some(least), Some(most)] => {
+            let range = Range { lower: least.value, upper: most.value };
+            Extent::at(range, 0.0, [least, most].map(|climb| climb.point.xi.clone()))
+        }
+        _ => Extent::unknown(row.domain.dimension()),
+    };
+    let extents: Vec<Extent> = of_outputs.iter().map(extent).collect();
+    let places = extents.iter().flat_map(|extent| extent.places.iter().cloned()).collect();
+    let errors = row.errors(&row.piece.surrogate.points(places));
+    let count = 2 * row.outputs;
+    let errors = |output: usize| [0, 1].map(|end| errors[output * count + 2 * output + end]);
+    let has_corners = of_outputs.iter().flatten().flatten().any(|climb| is_corner(&climb.point.xi));
+    let points: Vec<Point> = seeds.places.iter().map(|(_, point)| point.clone()).collect();
+    let of_seeds = if has_corners { row.errors(&points) } else { Vec::new() };
+    let is_held = |climb: Option<&Climb>, error: f64| {
+        climb.is_some_and(|climb| is_corner(&climb.point.xi) && is_held(row, &seeds, &of_seeds, climb, error))
+    };
+    let all = extents.into_iter().zip(&of_outputs).enumerate();
+    all.map(|(output, (extent, found))| {
+        let errors = errors(output);
+        Ends { extent, errors, is_corner: [0, 1].map(|end| is_held(found[end], errors[end])) }
+    })
+    .collect()
+}
+
+/// Whether all other places are within a corner, however the polynomials err: those that were looked at, and those
+/// beside it.
+fn is_held(row: &SegmentRow, seeds: &Seeds, of_seeds: &[f64], climb: &Climb, error: f64) -> bool {
+    let Some(slope) = row.piece.slope_of_errors() else { return false };
+    // Where an event passes through the part, outputs change within less than the seeds are apart.
+    if seeds.places.iter().any(|(segment, _)| *segment != climb.segment) {
+        return false;
+    }
+    let count = seeds.places.len();
+    let corner = &climb.point.xi;
+    let of_seed = |(index, (_, point)): (usize, &(usize, Point))| {
+        let at = climb.output * count + index;
+        let distance = largest(point.xi.iter().zip(corner).map(|(a, b)| a - b));
+        Rival { within: climb.sign * (climb.value - seeds.values[at]), error: of_seeds[at], change: slope * distance }
+    };
+    let beside = |axis: usize| {
+        let mut xi = corner.clone();
+        xi[axis] -= TUNING.beside_corner * xi[axis].signum();
+        xi
+    };
+    let beside = row.piece.surrogate.points((0..corner.len()).map(beside).collect());
+    let at: Vec<(&Point, usize, f64)> = beside.iter().map(|point| (point, climb.segment, row.time)).collect();
+    let values = row.outputs_on(&at);
+    let of_axis = |axis: usize| {
+        let within = climb.sign * (climb.value - values[climb.output * at.len() + axis]);
+        Rival { within, error, change: slope * TUNING.beside_corner }
+    };
+    seeds
+        .places
+        .iter()
+        .enumerate()
+        .map(of_seed)
+        .chain((0..corner.len()).map(of_axis))
+        .all(|rival| rival.stays_within(error))
 }
 
 /// Climbs from the best of all places that are looked at.
-fn begun(row: &SegmentRow, lattice: &Lattice) -> Vec<Climb> {
+fn begun(row: &SegmentRow, lattice: &Lattice) -> (Seeds, Vec<Climb>) {
     let time = row.time;
     let surrogate = &row.piece.surrogate;
     let mut seeds: Vec<(usize, Point)> =
@@ -90,7 +151,7 @@ fn begun(row: &SegmentRow, lattice: &Lattice) -> Vec<Climb> {
     };
     seeds.retain(|(segment, point)| point.is_inside() && is_in_segment(*segment, point));
     if seeds.is_empty() {
-        return Vec::new();
+        return (Seeds::default(), Vec::new());
     }
     let at: Vec<(&Point, usize, f64)> = seeds.iter().map(|(segment, point)| (point, *segment, time)).collect();
     let values = row.outputs_on(&at);
@@ -125,7 +186,7 @@ fn begun(row: &SegmentRow, lattice: &Lattice) -> Vec<Climb> {
             }));
         }
     }
-    climbs
+    (Seeds { places: seeds, values }, climbs)
 }
 
 /// Moves all climbs that have not ended; whether there are any.

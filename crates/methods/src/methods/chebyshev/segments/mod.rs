@@ -12,10 +12,11 @@
 //! - `of_part`: a number that motions have in a part of the box only;
 //! - `row`: the outputs at a time, and how far the polynomials' errors move them;
 //! - `seeds`: where a range is searched for, and `climb`: the search within the part of the box that is in a segment,
-//!   and on its surfaces.
+//!   and on its surfaces; `ends`: what is found.
 
 mod basis;
 mod climb;
+mod ends;
 mod fitting;
 mod growth;
 mod kept;
@@ -43,7 +44,8 @@ use crate::methods::kept::{CutRow, KeptSurrogate};
 use crate::methods::request::Keep;
 use crate::methods::result::{BandBuilder, Estimate, MethodResult};
 use crate::methods::validation::Validation;
-use crate::numerics::{Extent, Range, SAFETY_OF_SURROGATE, Sample, Surrogate, largest, union};
+use crate::numerics::{Extent, Range, SAFETY_OF_SURROGATE, Sample, Surrogate, largest};
+use ends::Ends;
 use growth::Growth;
 use kept::KeptPieces;
 pub use of_part::{number_as_motion, range_in_part};
@@ -154,6 +156,28 @@ fn excess(result: &MethodResult, goal: &Goal) -> f64 {
     largest(result.surrogate.iter().zip(&goal.outputs).map(of_output))
 }
 
+/// Bounds that tell how far those of a scan are off, by no more samples than it has itself, where the ensemble's motions
+/// are cut at events: across events differences of a scan's samples tell nothing of what is between them.
+///
+/// # Errors
+/// Where a sample cannot be assembled, or a closure not be compiled, and at an interruption.
+pub(in crate::methods) fn beside_scan(
+    ensemble: &dyn Ensemble,
+    samples: usize,
+    validation: &Validation,
+) -> Result<Option<MethodResult>, EnsembleError> {
+    let k = ensemble.domain().dimension();
+    if !can_compose(k, ensemble.scales().len()) {
+        return Ok(None);
+    }
+    let fits = |order: &usize| (order + 1).checked_pow(k as u32).is_some_and(|count| count <= samples);
+    let degrees = TUNING.degrees.into_iter().take_while(fits);
+    let order = degrees.last().unwrap_or(TUNING.first_degree);
+    let surrogate = Surrogate::tensor(&vec![order; k], &vec![order + 1; k]);
+    let points = ensemble.domain().samples(surrogate.samples());
+    of_degree(ensemble, &surrogate, &points, validation, Keep::Nothing)
+}
+
 /// By jets in segments between events, where the ensemble's motions are cut there.
 ///
 /// # Errors
@@ -163,13 +187,17 @@ pub(in crate::methods) fn of_jets(
     space: &JetSpace,
     validation: &Validation,
 ) -> Result<Option<MethodResult>, EnsembleError> {
-    match Pieces::of_jets(ensemble, space, validation)? {
-        Some(pieces) => {
-            let composed = composed(ensemble, &pieces, None, validation)?;
-            Ok(Some(composed.finished(ensemble, 1, pieces, Keep::Nothing)))
+    let Some(mut pieces) = Pieces::of_jets(ensemble, space, validation)? else { return Ok(None) };
+    let mut found = composed(ensemble, &pieces, None, validation)?;
+    for _ in 0..TUNING.halvings_of_jets {
+        if found.worst <= TUNING.enough_of_jets {
+            break;
         }
-        None => Ok(None),
+        let Some(halved) = pieces.halved(ensemble, space)? else { break };
+        pieces = halved;
+        found = composed(ensemble, &pieces, None, validation)?;
     }
+    Ok(Some(found.finished(ensemble, 1, pieces, Keep::Nothing)))
 }
 
 /// Bounds from polynomials.
@@ -178,6 +206,8 @@ struct Composed {
     simulated: Simulated,
     /// Rows that are known.
     rows: Vec<CutRow>,
+    /// Largest error as a share of its row's width.
+    worst: f64,
 }
 
 impl Composed {
@@ -187,7 +217,8 @@ impl Composed {
         let keeps = keep == Keep::Statistics;
         let kept = keeps.then(|| KeptPieces::new(ensemble.domain(), pieces, ensemble.outputs(), self.rows));
         let kept = kept.map(|kept| KeptSurrogate::of_pieces(Arc::new(kept)));
-        self.bands.finish_keeping(simulations, self.simulated, kept)
+        let result = self.bands.finish_keeping(simulations, self.simulated, kept);
+        MethodResult { is_told_at_rows: true, ..result }
     }
 }
 
@@ -225,13 +256,17 @@ fn composed(
         }
         let (time, closure) = (ensemble.time(row), closures[chosen[row]].as_ref());
         let row_of = BoxRow { domain, outputs: ensemble.outputs(), pieces, closure, time };
+        let at_corner = |output: usize, xi: &[f64]| {
+            let corner = validation.points.iter().position(|point| point == xi && is_corner(xi))?;
+            Some(validation.direct.at(row, output)[corner]).filter(|value| value.is_finite())
+        };
         let of_part = |(piece, lattice)| {
             let row_of = row_of.in_part(piece);
-            let extents = climb::extents(&row_of, lattice);
-            let moved = row_of.moved(&extents);
-            (extents, moved)
+            let mut ends = climb::ends(&row_of, lattice);
+            ends.iter_mut().enumerate().for_each(|(output, own)| own.hold(|xi| at_corner(output, xi)));
+            ends
         };
-        let parts: Vec<(Vec<Extent>, Vec<f64>)> = pieces.all.iter().zip(&lattices).map(of_part).collect();
+        let parts: Vec<Vec<Ends>> = pieces.all.iter().zip(&lattices).map(of_part).collect();
         let joined: Vec<(Extent, f64)> = (0..ensemble.outputs()).map(|output| joined(&parts, output)).collect();
         let extents: Vec<Extent> = joined.iter().map(|(extent, _)| extent.clone()).collect();
         let of_grid = |(grid, analysis): &(&Surrogate, SensitivityAnalysis)| {
@@ -257,6 +292,7 @@ fn composed(
     let found: Vec<Vec<Estimate>> =
         (0..ensemble.rows()).into_par_iter().map(known).collect::<Result<_, EnsembleError>>()?;
     let mut bands = BandBuilder::new(ensemble.outputs(), ensemble.rows());
+    let worst = largest(found.iter().flat_map(|row| row.iter().zip(&validation.spans)).map(share));
     for (row, estimates) in found.into_iter().enumerate() {
         estimates.into_iter().enumerate().for_each(|(output, estimate)| bands.set_estimate(row, output, estimate));
     }
@@ -266,7 +302,14 @@ fn composed(
         CutRow { time: ensemble.time(row), independent }
     };
     let rows = (0..known_rows).map(of_row).collect();
-    Ok(Composed { bands, simulated: Simulated { beyond_tolerance_from, ..Simulated::default() }, rows })
+    Ok(Composed { bands, simulated: Simulated { beyond_tolerance_from, ..Simulated::default() }, rows, worst })
+}
+
+/// An error as a share of its row's width, which is none to speak of below a share of the output's span; none where it
+/// is not known.
+fn share((estimate, span): (&Estimate, &f64)) -> f64 {
+    let share = SAFETY_OF_SURROGATE * estimate.error / estimate.range.width().max(TUNING.narrow_row * span);
+    if share.is_finite() { share } else { 0.0 }
 }
 
 /// A row of which only simulated values are known.
@@ -283,16 +326,19 @@ fn unknown(seen: Range) -> Estimate {
     }
 }
 
+/// Whether some ξ is a corner of the box.
+fn is_corner(xi: &[f64]) -> bool {
+    xi.iter().all(|xi| xi.abs() == 1.0)
+}
+
 /// An output's range over all parts, and how far either end may be off.
-fn joined(parts: &[(Vec<Extent>, Vec<f64>)], output: usize) -> (Extent, f64) {
-    let of_part = |(extents, moved): &(Vec<Extent>, Vec<f64>)| (extents[output].clone(), moved[output]);
+fn joined(parts: &[Vec<Ends>], output: usize) -> (Extent, f64) {
     // Nothing is known of a part that no point is found in.
-    let known = parts.iter().map(of_part).filter(|(extent, _)| !extent.range.lower.is_nan());
-    let join = |(own, of_own): (Extent, f64), (other, of_other): (Extent, f64)| {
-        let (range, error) = union((own.range, of_own), (other.range, of_other));
-        let [least, most] = [other.range.lower < own.range.lower, other.range.upper > own.range.upper];
-        let place = |end: usize, is_other: bool| if is_other { &other } else { &own }.places[end].clone();
-        (Extent::at(range, 0.0, [place(0, least), place(1, most)]), error)
+    let mut known = parts.iter().map(|ends| ends[output].clone()).filter(|ends| !ends.extent.range.lower.is_nan());
+    let Some(first) = known.next() else {
+        let unknown = || Extent::unknown(parts.first().map_or(0, |ends| ends[output].extent.places[0].len()));
+        return (unknown(), f64::NAN);
     };
-    known.reduce(join).or(parts.first().map(of_part)).unwrap_or((Extent::unknown(0), f64::NAN))
+    let all = known.fold(first, Ends::or);
+    (all.extent, largest(all.errors))
 }

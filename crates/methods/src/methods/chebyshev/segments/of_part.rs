@@ -4,6 +4,7 @@
 use symdiff::math;
 
 use super::basis::End;
+use super::ends::Ends;
 use super::fitting::Fitting;
 use super::parts::Samples;
 use super::piece::Piece;
@@ -15,7 +16,7 @@ use super::{climb, joined};
 use crate::methods::closure::Closure;
 use crate::methods::ensemble::{Ensemble, EnsembleError};
 use crate::methods::validation::Validation;
-use crate::numerics::{CutMotions, Extent, Range, STEP_NODES, SegmentMotions, corners, spread};
+use crate::numerics::{CutMotions, Range, STEP_NODES, SegmentMotions, corners, spread};
 
 /// The motions of a word that stand for a number of each of its samples; without numbers, of a word that has none.
 pub fn number_as_motion(samples: Vec<usize>, numbers: Option<&[f64]>) -> SegmentMotions {
@@ -86,12 +87,9 @@ pub fn range_in_part(
     let of_piece = |piece: &Piece| {
         let lattice = Lattice::new(&piece.surrogate, &piece.samples, k);
         let row = SegmentRow { domain, outputs: 1, piece, closure: &Number, time: middle };
-        let extents = climb::extents(&row, &lattice);
-        let moved = row.moved(&extents);
-        (extents, moved)
+        climb::ends(&row, &lattice)
     };
-    let parts: Vec<(Vec<Extent>, Vec<f64>)> =
-        pieces.iter().filter(|piece| piece.surrogate.segments() > 0).map(of_piece).collect();
+    let parts: Vec<Vec<Ends>> = pieces.iter().filter(|piece| piece.surrogate.segments() > 0).map(of_piece).collect();
     let (extent, moved) = joined(&parts, 0);
     let error = held_out.map(|number| extent.range.distance(number)).fold(moved, f64::max);
     Ok(Some(RangeInPart { range: extent.range, error, share: share(&pieces, k) }))

@@ -75,6 +75,19 @@ impl Piece {
         Self { surrogate, errors: of_all, deeper, samples, depths }
     }
 
+    /// By how many times themselves errors change for a ξ of 1, at most: a polynomial does by the square of its degree
+    /// (Markov), which is little more than that of the part's own. Not known in layers, which are thin.
+    pub fn slope_of_errors(&self) -> Option<f64> {
+        let degree = (self.surrogate.degree() + TUNING.degrees_of_errors) as f64;
+        let size = |axis: usize| {
+            let own = self.samples.iter().map(|xi| xi[axis]);
+            0.5 * (own.clone().fold(f64::NEG_INFINITY, f64::max) - own.fold(f64::INFINITY, f64::min))
+        };
+        let axes = 0..self.samples.first().map_or(0, Vec::len);
+        let least = axes.map(size).fold(1.0, f64::min);
+        (!self.surrogate.is_layer()).then_some(degree * degree / least)
+    }
+
     /// Errors at a point: beside a surface they are larger than far behind it, so that only samples count which are
     /// not several times nearer to it.
     pub fn errors_at(&self, point: &Point) -> &SegmentErrors {

@@ -6,11 +6,11 @@
 
 use symdiff::jet::JetSpace;
 
-use super::basis::Basis;
+use super::basis::{Basis, End};
 use super::fitting::Fitting;
-use super::parts::{Samples, WordPart};
+use super::parts::Samples;
 use super::piece::Piece;
-use super::surrogate::{SegmentErrors, SegmentSurrogate};
+use super::surrogate::{HalfBox, SegmentErrors, SegmentSurrogate};
 use super::tuning::TUNING;
 use crate::methods::ensemble::{Ensemble, EnsembleError};
 use crate::methods::validation::Validation;
@@ -64,8 +64,9 @@ impl Pieces {
         })
     }
 
-    /// From jets, each about the sample that is nearest to the middle of a part: samples that show the parts tell the
-    /// errors, too; `None` where motions are not cut, or validation samples cannot be.
+    /// From the jet of a box of one word, whose errors validation samples tell. Behind a surface on which an event is
+    /// grazed motions go with a root, which no jet follows: in boxes of several words polynomials are fitted, and where
+    /// the centre has no jet, too. `None` where motions are not cut.
     ///
     /// # Errors
     /// Where a sample cannot be assembled.
@@ -76,36 +77,53 @@ impl Pieces {
     ) -> Result<Option<Self>, EnsembleError> {
         let domain = ensemble.domain();
         let k = domain.dimension();
-        let Some((first, jet)) = ensemble.segment_jets(space, &vec![0.0; k])? else { return Ok(None) };
-        let Some(direct) = ensemble.segments(&domain.samples(&validation.points))? else { return Ok(None) };
-        let mut samples = Samples { xi: validation.points.clone(), motions: direct };
-        let is_one = samples.motions.words.iter().filter(|word| !word.samples.is_empty()).count() == 1;
-        if !is_one {
-            let others = [corners(k, TUNING.corners), spread(k, TUNING.samples_of_parts * k)].concat();
-            let Some(motions) = ensemble.segments(&domain.samples(&others))? else { return Ok(None) };
-            samples.motions.append(motions, samples.xi.len());
-            samples.xi.extend(others);
+        let points = &validation.points;
+        let Some(direct) = ensemble.segments(&domain.samples(points))? else { return Ok(None) };
+        let middle = vec![0.0; k];
+        if let Some((word, jet)) = ensemble.segment_jets(space, &middle)?
+            && let Some(own) = direct.words.get(word).filter(|own| own.samples.len() == points.len())
+        {
+            let basis = Basis::Taylor { monomials: space.monomials().clone(), centre: middle };
+            let all = vec![of_jet(basis, Vec::new(), &jet, points.clone(), own)];
+            return Ok(Some(Self { all, known_to: direct.known_to, added: 0 }));
         }
-        let levels = samples.levels();
-        let mut all = Vec::new();
-        for (word, motions) in samples.motions.words.iter().enumerate() {
-            let xi: Vec<Vec<f64>> = motions.samples.iter().map(|&sample| samples.xi[sample].clone()).collect();
-            let Some(centre) = central(&xi) else { continue };
-            let (centre, jet) = match word == first {
-                true => (vec![0.0; k], Some((first, jet.clone()))),
-                false => (centre.clone(), ensemble.segment_jets(space, centre)?),
-            };
-            let Some((_, jet)) = jet.filter(|(own, _)| *own == word) else { return Ok(None) };
-            let basis = Basis::Taylor { monomials: space.monomials().clone(), centre };
-            let ends = WordPart::of_word(word, &samples.motions).ends(&levels);
-            let surrogate = SegmentSurrogate::new(basis, ends, &jet, <[f64]>::to_vec).told_at(&xi);
-            // From the start, which is known, errors grow. Behind events ends are farther from the centre of a jet than
-            // samples are: what one of them shows is said of all steps.
-            let errors = SegmentErrors::new(&surrogate, &xi, motions).of_segments_behind_events();
-            all.push(Piece::new(surrogate, errors, xi));
+        let order = highest_degree(usize::MAX, k);
+        let grid = Surrogate::tensor(&vec![order; k], &vec![order + 1; k]);
+        let Some(motions) = ensemble.segments(&domain.samples(grid.samples()))? else { return Ok(None) };
+        let found = Self::new(ensemble, &grid, motions, validation)?;
+        Ok(found.map(|found| Self { added: found.added + grid.samples().len(), ..found }))
+    }
+
+    /// The same of a box of one word, whose parts are divided in halves along the axes in which jets lack most: each
+    /// has a jet about its middle. `None` where a part is of several words, or is no jet's.
+    ///
+    /// # Errors
+    /// Where a sample cannot be assembled.
+    pub fn halved(&self, ensemble: &dyn Ensemble, space: &JetSpace) -> Result<Option<Self>, EnsembleError> {
+        let domain = ensemble.domain();
+        let k = domain.dimension();
+        let (mut all, mut added, mut known_to) = (Vec::new(), self.added, self.known_to);
+        for piece in &self.all {
+            let Some(halves) = piece.surrogate.halves() else { return Ok(None) };
+            for HalfBox { middle, half_widths, ends } in halves {
+                let Some((word, jet)) = ensemble.segment_jets(space, &middle)? else { return Ok(None) };
+                let within = [corners(k, TUNING.corners), spread(k, TUNING.samples_of_halves * k)].concat();
+                let of_box = |xi: &Vec<f64>| -> Vec<f64> {
+                    let axes = xi.iter().zip(&middle).zip(&half_widths);
+                    axes.map(|((xi, middle), half_width)| middle + xi * half_width).collect()
+                };
+                let xi: Vec<Vec<f64>> = within.iter().map(of_box).collect();
+                let Some(motions) = ensemble.segments(&domain.samples(&xi))? else { return Ok(None) };
+                let Some(own) = motions.words.get(word).filter(|own| own.samples.len() == xi.len()) else {
+                    return Ok(None);
+                };
+                added += xi.len() + 1;
+                known_to = known_to.min(motions.known_to);
+                let basis = Basis::Taylor { monomials: space.monomials().clone(), centre: middle };
+                all.push(of_jet(basis, ends, &jet, xi, own));
+            }
         }
-        let added = samples.xi.len() - validation.points.len() + all.len() - 1;
-        Ok(Some(Self { all, known_to: samples.motions.known_to, added }))
+        Ok(Some(Self { all, known_to, added }))
     }
 
     /// The part that some ξ is in: where errors of surfaces leave it in none, that which it is least far from.
@@ -115,18 +133,18 @@ impl Pieces {
     }
 }
 
+/// A part from a jet, with the errors at these samples.
+fn of_jet(basis: Basis, ends: Vec<End>, jet: &SegmentMotions, xi: Vec<Vec<f64>>, motions: &SegmentMotions) -> Piece {
+    let surrogate = SegmentSurrogate::new(basis, ends, jet, <[f64]>::to_vec).told_at(&xi);
+    // From the start, which is known, errors grow. Behind events ends are farther from the centre of a jet than samples
+    // are: what one of them shows is said of all steps.
+    let errors = SegmentErrors::new(&surrogate, &xi, motions).of_segments_behind_events();
+    Piece::new(surrogate, errors, xi)
+}
+
 /// Highest total degree in a part, given that over the whole box.
 pub(super) fn highest_degree(order: usize, k: usize) -> usize {
     let highest =
         TUNING.degrees_of_part.get(k.saturating_sub(1)).or(TUNING.degrees_of_part.last()).map_or(0, |&most| most);
     order.max(TUNING.least_degree).min(highest)
-}
-
-/// The point that is nearest to the middle of all.
-fn central(points: &[Vec<f64>]) -> Option<&Vec<f64>> {
-    let count = points.len() as f64;
-    let mean = |axis: usize| points.iter().map(|point| point[axis]).sum::<f64>() / count;
-    let means: Vec<f64> = (0..points.first()?.len()).map(mean).collect();
-    let distance = |xi: &Vec<f64>| xi.iter().zip(&means).map(|(xi, mean)| (xi - mean) * (xi - mean)).sum::<f64>();
-    points.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)))
 }

@@ -6,7 +6,7 @@ use super::surrogate::Point;
 use super::tuning::TUNING;
 use crate::methods::chebyshev::sensitivity::Predicted;
 use crate::methods::closure::Closure;
-use crate::numerics::{Extent, ParameterBox, Surrogate, largest};
+use crate::numerics::{ParameterBox, Surrogate, largest};
 
 /// A row of output in one part of the box.
 pub(super) struct SegmentRow<'r> {
@@ -67,12 +67,10 @@ impl SegmentRow<'_> {
         self.closure.outputs(self.time, count, parameters, motion)
     }
 
-    /// How far the polynomials' errors move the ends of ranges: an end is where a point is, and there an event that is
-    /// near may have been already, or not yet, each line may be off by its own error, and a surface beside it by its.
-    pub fn moved(&self, extents: &[Extent]) -> Vec<f64> {
+    /// How far the polynomials' errors move outputs at points (output, point): there an event that is near may have been
+    /// already, or not yet, each line may be off by its own error, and a surface beside it by its.
+    pub fn errors(&self, points: &[Point]) -> Vec<f64> {
         let surrogate = &self.piece.surrogate;
-        let xi = extents.iter().flat_map(|extent| extent.places.iter().cloned()).collect();
-        let points = surrogate.points(xi);
         let (count, n) = (points.len(), surrogate.lines() / 2);
         let at = |shift: f64| {
             let shifted = |point: &Point| {
@@ -83,7 +81,7 @@ impl SegmentRow<'_> {
             points.iter().map(|point| (point, point.segment(shifted(point)), self.time)).collect::<Vec<_>>()
         };
         let here = self.outputs_on(&at(0.0));
-        let mut moved: Vec<Vec<f64>> = vec![vec![0.0; count]; extents.len()];
+        let mut moved: Vec<Vec<f64>> = vec![vec![0.0; count]; self.outputs];
         let mut add = |ways: [Vec<f64>; 2]| {
             for (output, moved) in moved.iter_mut().enumerate() {
                 for (index, moved) in moved.iter_mut().enumerate() {
@@ -109,14 +107,11 @@ impl SegmentRow<'_> {
             }));
         }
         for end in 0..surrogate.ends.len() {
-            add([-1.0, 1.0].map(|sign| self.outputs_at(&self.beside(&points, end, sign))));
+            add([-1.0, 1.0].map(|sign| self.outputs_at(&self.beside(points, end, sign))));
         }
         // Outside of the samples of a fit errors are larger.
         let far: Vec<f64> = points.iter().map(|point| surrogate.leverage(&point.xi).max(1.0).sqrt()).collect();
-        let own = |(output, moved): (usize, &Vec<f64>)| {
-            largest(moved.iter().zip(&far).skip(2 * output).take(2).map(|(moved, far)| far * moved))
-        };
-        moved.iter().enumerate().map(own).collect()
+        moved.iter().flat_map(|moved| moved.iter().zip(&far).map(|(moved, far)| far * moved)).collect()
     }
 
     /// Points that are beside a surface, moved across it as far as its error is.

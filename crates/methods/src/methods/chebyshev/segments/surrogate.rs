@@ -23,6 +23,14 @@ pub(super) struct SegmentSurrogate {
     reach: Vec<f64>,
 }
 
+/// A half of a jet's part.
+pub(super) struct HalfBox {
+    pub middle: Vec<f64>,
+    /// Along each axis.
+    pub half_widths: Vec<f64>,
+    pub ends: Vec<End>,
+}
+
 /// A point of the box with its values that do not depend on the time.
 #[derive(Clone, Debug)]
 pub(super) struct Point {
@@ -110,6 +118,42 @@ impl SegmentSurrogate {
         self.squares.as_ref().map_or(0.0, of)
     }
 
+    /// Both halves of a jet's part, across the axis in which it lacks most: in which its last terms are largest, as
+    /// shares of all of their line. Its centre is the middle of the part.
+    pub fn halves(&self) -> Option<[HalfBox; 2]> {
+        let Basis::Taylor { monomials, centre } = &self.basis else { return None };
+        let (k, order) = (centre.len(), monomials.order());
+        // Corners of the part are among the samples.
+        let half_widths = self.reach.clone();
+        let mut lacks = vec![0.0; k];
+        let lines = self.times.iter().map(Vec::as_slice);
+        let lines = lines.chain(self.nodes.iter().flatten().flat_map(|node| node.chunks_exact(monomials.len())));
+        for line in lines {
+            let last = (0..monomials.len()).filter(|&term| monomials.exponents(term).iter().sum::<usize>() == order);
+            let mut of_axes = vec![0.0; k];
+            for term in last {
+                let exponents = monomials.exponents(term);
+                let widths = exponents.iter().zip(&half_widths).map(|(&exponent, width)| width.powi(exponent as i32));
+                let size = line[term].abs() * widths.product::<f64>();
+                of_axes.iter_mut().zip(exponents).for_each(|(own, &exponent)| *own += size * exponent as f64);
+            }
+            let sum: f64 = of_axes.iter().sum();
+            if sum > 0.0 {
+                lacks.iter_mut().zip(of_axes).for_each(|(lacks, own)| *lacks += own / sum);
+            }
+        }
+        let axis = (0..k).max_by(|&a, &b| lacks[a].total_cmp(&lacks[b]))?;
+        let half = |sign: f64| {
+            let (mut middle, mut half_widths) = (centre.clone(), half_widths.clone());
+            half_widths[axis] *= 0.5;
+            middle[axis] += sign * half_widths[axis];
+            let mut ends = self.ends.clone();
+            ends.push(End::across(axis, centre[axis], sign, k));
+            HalfBox { middle, half_widths, ends }
+        };
+        Some([half(-1.0), half(1.0)])
+    }
+
     /// Number of positions and velocities, 2n.
     pub fn lines(&self) -> usize {
         self.lines
@@ -118,6 +162,16 @@ impl SegmentSurrogate {
     /// Number of terms.
     pub fn terms(&self) -> usize {
         self.basis.len()
+    }
+
+    /// Highest degree in an axis of its polynomials.
+    pub fn degree(&self) -> usize {
+        self.basis.degree()
+    }
+
+    /// Whether it was fitted in a layer behind a surface.
+    pub fn is_layer(&self) -> bool {
+        self.squares.is_some() && self.ends.iter().any(|end| end.offset != 0.0)
     }
 
     /// Number of segments.

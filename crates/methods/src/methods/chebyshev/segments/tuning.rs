@@ -73,7 +73,7 @@ tuning! {
         least_degree: usize = 3, moves "Chebyshev bounds through events";
         /// Highest total degree in a part, by the number of parameters; of more it is the last.
         degrees_of_part: [usize; 4] = [8, 5, 3, 2], moves "Chebyshev bounds through events";
-        /// Samples for each parameter that show the parts of jets and of instants.
+        /// Samples for each parameter that show the parts of instants.
         samples_of_parts: usize = 24, moves "Chebyshev bounds through events";
         /// Points spread over the box that tell the share of it in which an event occurs.
         points_of_share: usize = 1 << 14, moves "shares of the box";
@@ -87,6 +87,18 @@ tuning! {
         depths_of_errors: [f64; 2] = [1.0 / 32.0, 1.0 / 8.0], moves "errors of Chebyshev bounds through events";
         /// Samples count for errors at a point that are at this share of its depth, or deeper.
         shallower: f64 = 0.5, moves "errors of Chebyshev bounds through events";
+        /// Degrees by which errors of polynomials are above these.
+        degrees_of_errors: usize = 2, moves "errors of bounds through events";
+        /// Distance from a corner at which it is compared with its neighbours, in ξ.
+        beside_corner: f64 = 1e-3, moves "errors of bounds through events";
+        /// Jets are divided where an error is larger than this share of its row's width.
+        enough_of_jets: f64 = 0.1, moves "Taylor bounds through events";
+        /// A row that is narrower than this share of its output's span counts as so wide there.
+        narrow_row: f64 = 0.01, moves "Taylor bounds through events";
+        /// Halvings of jets, at most.
+        halvings_of_jets: usize = 3, moves "Taylor bounds through events";
+        /// Samples for each parameter that tell the errors of a half, beside its corners.
+        samples_of_halves: usize = 12, moves "Taylor bounds through events";
         /// Candidates of each round in which samples are added.
         candidates: usize = 512, moves "Chebyshev bounds through events";
         /// Corners of the box among the candidates for samples.
