@@ -112,7 +112,7 @@ fn a_dissipating_contact_is_as_another_integrator_has_it() {
         let [a, b] = [f64::from(index % 5) / 2.0 - 1.0, f64::from(index / 5) / 2.0 - 1.0];
         let (height, d) = (1.0 + 0.02 * a, 0.1 * (1.0 + 0.05 * b));
         let rate = |_: f64, [y, v]: [f64; 2]| [v, -9.81 + 1e5 * (-y).max(0.0) * (1.0 - d * v)];
-        let motion = dormand_prince(rate, [height, 0.0], 0.02, bounds.times.len(), 1e-12);
+        let motion = dormand_prince(rate, [height, 0.0], 0.02, bounds.times.len(), 1e-14);
         widen(&mut truths, motion);
     }
     let row = |t: f64| (t / 0.02).round() as usize;
@@ -154,7 +154,8 @@ bounds: { chebyshev: { order: 5 } }
 /// Height of the ceiling, m.
 const HEIGHT: f64 = 1.3;
 
-/// Height and velocity of the throw under a ceiling: parabolas, and in contact y = H + (u/ω) sin ωτ − (g/ω²)(1 − cos ωτ).
+/// Height and velocity of the throw under a ceiling: parabolas, and in contact
+/// y = H + (u/ω) sin ωτ − (g/ω²)(1 − cos ωτ).
 fn thrown(height: f64, speed: f64, stiffness: f64, t: f64) -> [f64; 2] {
     let g = 9.81;
     let left = speed * speed - 2.0 * g * height;
@@ -265,7 +266,7 @@ fn jets_go_through_instants_that_are_known_to_rounding() {
     assert_within(&bounds, "y", Method::Taylor, 5e-5, |t| of_line(0, t));
 }
 
-/// Differences of a scan's few samples tell nothing of what is between them.
+/// Differences of a scan's few samples tell nothing of the motions between them.
 #[test]
 fn errors_of_scans_are_those_of_motions_between_events() {
     let text = CEILING.replace("chebyshev: { order: 5 }", "scan: { points: 5 }");
@@ -589,7 +590,7 @@ fn four_parameters_take_few_simulations() {
         let side = |bit: usize| if corner == 16 { 1.0 } else { 0.95 + 0.1 * f64::from(corner >> bit & 1) };
         let (height, d, stiffness) = (side(0), 0.1 * side(1), 1e5 * side(2) / side(3));
         let rate = |_: f64, [y, v]: [f64; 2]| [v, -9.81 + stiffness * (-y).max(0.0) * (1.0 - d * v)];
-        let motion = dormand_prince(rate, [height, 0.0], 0.02, bounds.times.len(), 1e-11);
+        let motion = dormand_prince(rate, [height, 0.0], 0.02, bounds.times.len(), 1e-14);
         widen(&mut truths, motion);
     }
     let row = |t: f64| (t / 0.02).round() as usize;

@@ -93,16 +93,16 @@ pub(super) fn ends(row: &SegmentRow, lattice: &Lattice) -> Vec<Ends> {
 /// beside it.
 fn is_held(row: &SegmentRow, seeds: &Seeds, of_seeds: &[f64], climb: &Climb, error: f64) -> bool {
     let Some(slope) = row.piece.slope_of_errors() else { return false };
+    // Where an event passes through the part, outputs change within less than the seeds are apart.
+    if seeds.places.iter().any(|(segment, _)| *segment != climb.segment) {
+        return false;
+    }
     let count = seeds.places.len();
     let corner = &climb.point.xi;
-    let of_seed = |(index, (segment, point)): (usize, &(usize, Point))| {
+    let of_seed = |(index, (_, point)): (usize, &(usize, Point))| {
         let at = climb.output * count + index;
         let distance = largest(point.xi.iter().zip(corner).map(|(a, b)| a - b));
-        Rival {
-            within: climb.sign * (climb.value - seeds.values[at]),
-            error: of_seeds[at],
-            change: (*segment == climb.segment).then_some(slope * distance),
-        }
+        Rival { within: climb.sign * (climb.value - seeds.values[at]), error: of_seeds[at], change: slope * distance }
     };
     let beside = |axis: usize| {
         let mut xi = corner.clone();
@@ -114,7 +114,7 @@ fn is_held(row: &SegmentRow, seeds: &Seeds, of_seeds: &[f64], climb: &Climb, err
     let values = row.outputs_on(&at);
     let of_axis = |axis: usize| {
         let within = climb.sign * (climb.value - values[climb.output * at.len() + axis]);
-        Rival { within, error, change: Some(slope * TUNING.beside_corner) }
+        Rival { within, error, change: slope * TUNING.beside_corner }
     };
     seeds
         .places

@@ -19,17 +19,16 @@ pub(super) struct Rival {
     pub within: f64,
     /// How far the polynomials' errors move it.
     pub error: f64,
-    /// By how many times themselves errors change on the way to the end's place; none in another segment, in which
-    /// they are others.
-    pub change: Option<f64>,
+    /// By how many times themselves errors change on the way to the end's place.
+    pub change: f64,
 }
 
 impl Rival {
     /// Whether it is within an end that errors move so far.
     pub fn stays_within(&self, error: f64) -> bool {
         let apart = SAFETY_OF_SURROGATE * (error + self.error);
-        let near = |change: f64| SAFETY_OF_SURROGATE * change * error.max(self.error);
-        self.within >= self.change.map_or(apart, |change| near(change).min(apart))
+        let near = SAFETY_OF_SURROGATE * self.change * error.max(self.error);
+        self.within >= near.min(apart)
     }
 }
 
@@ -85,9 +84,9 @@ mod tests {
 
     #[test]
     fn a_place_is_within_where_errors_cannot_lift_it() {
-        let rival = |within: f64, change: Option<f64>| Rival { within, error: 1e-3, change };
-        assert!(rival(5e-3, None).stays_within(1e-3) && !rival(3e-3, None).stays_within(1e-3));
-        assert!(rival(1e-4, Some(0.04)).stays_within(1e-3) && !rival(1e-4, Some(0.06)).stays_within(1e-3));
-        assert!(!rival(3e-3, Some(36.0)).stays_within(1e-3));
+        let rival = |within: f64, change: f64| Rival { within, error: 1e-3, change };
+        assert!(rival(5e-3, f64::INFINITY).stays_within(1e-3) && !rival(3e-3, f64::INFINITY).stays_within(1e-3));
+        assert!(rival(1e-4, 0.04).stays_within(1e-3) && !rival(1e-4, 0.06).stays_within(1e-3));
+        assert!(!rival(3e-3, 36.0).stays_within(1e-3));
     }
 }
