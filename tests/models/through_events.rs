@@ -154,7 +154,8 @@ bounds: { chebyshev: { order: 5 } }
 /// Height of the ceiling, m.
 const HEIGHT: f64 = 1.3;
 
-/// Height and velocity of the throw under a ceiling: parabolas, and in contact y = H + (u/ω) sin ωτ − (g/ω²)(1 − cos ωτ).
+/// Height and velocity of the throw under a ceiling: parabolas, and in contact
+/// y = H + (u/ω) sin ωτ − (g/ω²)(1 − cos ωτ).
 fn thrown(height: f64, speed: f64, stiffness: f64, t: f64) -> [f64; 2] {
     let g = 9.81;
     let left = speed * speed - 2.0 * g * height;
@@ -265,7 +266,7 @@ fn jets_go_through_instants_that_are_known_to_rounding() {
     assert_within(&bounds, "y", Method::Taylor, 5e-5, |t| of_line(0, t));
 }
 
-/// Differences of a scan's few samples tell nothing of what is between them.
+/// Differences of a scan's few samples tell nothing of the motions between them.
 #[test]
 fn errors_of_scans_are_those_of_motions_between_events() {
     let text = CEILING.replace("chebyshev: { order: 5 }", "scan: { points: 5 }");

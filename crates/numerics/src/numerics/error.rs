@@ -90,8 +90,8 @@ impl BandError {
         all
     }
 
-    /// The same where the surrogate's errors are told row by row: what is large or lost within a contact says nothing
-    /// of the rows behind it.
+    /// The same where the surrogate's errors are told row by row: a large error within a contact says nothing of the
+    /// rows behind it.
     pub fn told(ranges: &[Range], surrogate: &[f64], time: &[f64], span: f64, tolerance: Option<f64>) -> Self {
         Self::of(held_up(surrogate, SAFETY_OF_SURROGATE, 0.0), ranges, time, span, tolerance)
     }

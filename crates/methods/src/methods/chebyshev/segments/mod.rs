@@ -12,7 +12,7 @@
 //! - `of_part`: a number that motions have in a part of the box only;
 //! - `row`: the outputs at a time, and how far the polynomials' errors move them;
 //! - `seeds`: where a range is searched for, and `climb`: the search within the part of the box that is in a segment,
-//!   and on its surfaces; `ends`: what is found.
+//!   and on its surfaces; `ends`: the ends that it finds.
 
 mod basis;
 mod climb;
@@ -156,8 +156,8 @@ fn excess(result: &MethodResult, goal: &Goal) -> f64 {
     largest(result.surrogate.iter().zip(&goal.outputs).map(of_output))
 }
 
-/// Bounds that tell how far those of a scan are off, by no more samples than it has itself, where the ensemble's motions
-/// are cut at events: across events differences of a scan's samples tell nothing of what is between them.
+/// Bounds that tell how far those of a scan are off, by no more samples than it has itself, where the ensemble's
+/// motions are cut at events: across events differences of a scan's samples tell nothing of the motions between them.
 ///
 /// # Errors
 /// Where a sample cannot be assembled, or a closure not be compiled, and at an interruption.
@@ -292,7 +292,8 @@ fn composed(
     let found: Vec<Vec<Estimate>> =
         (0..ensemble.rows()).into_par_iter().map(known).collect::<Result<_, EnsembleError>>()?;
     let mut bands = BandBuilder::new(ensemble.outputs(), ensemble.rows());
-    let worst = largest(found.iter().flat_map(|row| row.iter().zip(&validation.spans)).map(share));
+    let shares = found.iter().flat_map(|row| row.iter().zip(&validation.spans));
+    let worst = largest(shares.map(|(estimate, &span)| share(estimate, span)));
     for (row, estimates) in found.into_iter().enumerate() {
         estimates.into_iter().enumerate().for_each(|(output, estimate)| bands.set_estimate(row, output, estimate));
     }
@@ -307,7 +308,7 @@ fn composed(
 
 /// An error as a share of its row's width, which is none to speak of below a share of the output's span; none where it
 /// is not known.
-fn share((estimate, span): (&Estimate, &f64)) -> f64 {
+fn share(estimate: &Estimate, span: f64) -> f64 {
     let share = SAFETY_OF_SURROGATE * estimate.error / estimate.range.width().max(TUNING.narrow_row * span);
     if share.is_finite() { share } else { 0.0 }
 }

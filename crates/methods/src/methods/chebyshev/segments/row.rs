@@ -67,8 +67,8 @@ impl SegmentRow<'_> {
         self.closure.outputs(self.time, count, parameters, motion)
     }
 
-    /// How far the polynomials' errors move outputs at points (output, point): there an event that is near may have been
-    /// already, or not yet, each line may be off by its own error, and a surface beside it by its.
+    /// How far the polynomials' errors move outputs at points (output, point): there an event that is near may have
+    /// been already, or not yet, each line may be off by its own error, and a surface beside it by its.
     pub fn errors(&self, points: &[Point]) -> Vec<f64> {
         let surrogate = &self.piece.surrogate;
         let (count, n) = (points.len(), surrogate.lines() / 2);
