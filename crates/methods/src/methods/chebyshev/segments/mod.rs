@@ -156,8 +156,9 @@ fn excess(result: &MethodResult, goal: &Goal) -> f64 {
     largest(result.surrogate.iter().zip(&goal.outputs).map(of_output))
 }
 
-/// Bounds that tell how far those of a scan are off, by no more samples than it has itself, where the ensemble's
-/// motions are cut at events: across events differences of a scan's samples tell nothing of the motions between them.
+/// Bounds that tell how far those of a scan are off, where the ensemble's motions are cut at events: across events
+/// differences of a scan's samples tell nothing of the motions between them. They take no more samples than the scan;
+/// of few parameters at least those of the first degree.
 ///
 /// # Errors
 /// Where a sample cannot be assembled, or a closure not be compiled, and at an interruption.
@@ -172,7 +173,8 @@ pub(in crate::methods) fn beside_scan(
     }
     let fits = |order: &usize| (order + 1).checked_pow(k as u32).is_some_and(|count| count <= samples);
     let degrees = TUNING.degrees.into_iter().take_while(fits);
-    let order = degrees.last().unwrap_or(TUNING.first_degree);
+    let first = (k <= TUNING.degrees_of_part.len()).then_some(TUNING.first_degree);
+    let Some(order) = degrees.last().or(first) else { return Ok(None) };
     let surrogate = Surrogate::tensor(&vec![order; k], &vec![order + 1; k]);
     let points = ensemble.domain().samples(surrogate.samples());
     of_degree(ensemble, &surrogate, &points, validation, Keep::Nothing)

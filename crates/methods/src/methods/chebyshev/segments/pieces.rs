@@ -8,6 +8,7 @@ use symdiff::jet::JetSpace;
 
 use super::basis::{Basis, End};
 use super::fitting::Fitting;
+use super::growth::Growth;
 use super::parts::Samples;
 use super::piece::Piece;
 use super::surrogate::{HalfBox, SegmentErrors, SegmentSurrogate};
@@ -87,9 +88,16 @@ impl Pieces {
             let all = vec![of_jet(basis, Vec::new(), &jet, points.clone(), own)];
             return Ok(Some(Self { all, known_to: direct.known_to, added: 0 }));
         }
-        let order = highest_degree(usize::MAX, k);
-        let grid = Surrogate::tensor(&vec![order; k], &vec![order + 1; k]);
-        let Some(motions) = ensemble.segments(&domain.samples(grid.samples()))? else { return Ok(None) };
+        let (grid, motions) = if k > TUNING.degrees_of_part.len() {
+            // A full grid of many parameters has too many samples.
+            let Some(Growth { grid, motions }) = Growth::start(ensemble)? else { return Ok(None) };
+            (Surrogate::sparse(&grid), motions)
+        } else {
+            let order = highest_degree(usize::MAX, k);
+            let grid = Surrogate::tensor(&vec![order; k], &vec![order + 1; k]);
+            let Some(motions) = ensemble.segments(&domain.samples(grid.samples()))? else { return Ok(None) };
+            (grid, motions)
+        };
         let found = Self::new(ensemble, &grid, motions, validation)?;
         Ok(found.map(|found| Self { added: found.added + grid.samples().len(), ..found }))
     }
