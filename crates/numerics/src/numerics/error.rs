@@ -80,23 +80,17 @@ impl BandError {
     /// band is lost from where its surrogate no longer follows the response.
     pub fn new(ranges: &[Range], surrogate: &[f64], time: &[f64], span: f64, tolerance: Option<f64>) -> Self {
         let surrogate = held_up(surrogate, SAFETY_OF_SURROGATE, TUNING.of_largest);
-        let mut all = Self::of(surrogate, ranges, time, span, tolerance);
-        if tolerance.is_none() {
-            let first = all.unresolved_from().unwrap_or(ranges.len());
-            all.unresolved[first..].fill(true);
-            all.coarse =
-                all.unresolved.iter().zip(&all.total).map(|(&flag, total)| flag && total.is_finite()).collect();
-        }
-        all
+        Self::of(surrogate, ranges, time, span, tolerance, tolerance.is_none())
     }
 
     /// The same where the surrogate's errors are told row by row: a large error within a contact says nothing of the
     /// rows behind it.
     pub fn told(ranges: &[Range], surrogate: &[f64], time: &[f64], span: f64, tolerance: Option<f64>) -> Self {
-        Self::of(held_up(surrogate, SAFETY_OF_SURROGATE, 0.0), ranges, time, span, tolerance)
+        Self::of(held_up(surrogate, SAFETY_OF_SURROGATE, 0.0), ranges, time, span, tolerance, false)
     }
 
-    fn of(surrogate: Vec<f64>, ranges: &[Range], time: &[f64], span: f64, tolerance: Option<f64>) -> Self {
+    /// `lasts`: whether a row that is lost loses all behind it.
+    fn of(surrogate: Vec<f64>, ranges: &[Range], time: &[f64], span: f64, tolerance: Option<f64>, lasts: bool) -> Self {
         let time = held_up(&envelope(time), SAFETY_OF_STEPS, TUNING.of_largest);
         let total: Vec<f64> = surrogate.iter().zip(&time).map(|(surrogate, time)| surrogate + time).collect();
         let is_unresolved = |(row, range): (usize, &Range)| {
@@ -107,7 +101,13 @@ impl BandError {
             let follows = surrogate[row] <= (TUNING.lost * range.width()).max(TUNING.small_error * span) || at_rest;
             !tolerance.map_or(follows && small(TUNING.far_off), small)
         };
-        let unresolved: Vec<bool> = ranges.iter().enumerate().map(is_unresolved).collect();
+        let mut lost = false;
+        let of_row = |row: (usize, &Range)| {
+            let is_unresolved = is_unresolved(row) || lost;
+            lost = lasts && is_unresolved;
+            is_unresolved
+        };
+        let unresolved: Vec<bool> = ranges.iter().enumerate().map(of_row).collect();
         // An error that is not finite has no known size.
         let coarse =
             unresolved.iter().zip(&total).map(|(&unresolved, total)| unresolved && total.is_finite()).collect();

@@ -92,7 +92,7 @@ pub use observed_order::{Correction, Differences, corrections};
 pub use paving::{Boxes, LeastExcess, Paving, PavingLimits, Tubes, least_excess, pave};
 pub use polynomial_range::{PolynomialRange, RangeKind};
 pub use quadrature::integrals;
-pub use range::{EMPTY, Range, larger, least, limits, most, union};
+pub use range::{EMPTY, Range, error_of_larger, larger, least, limits, most, union};
 pub use row_space::{RowSpace, combined, dot};
 pub use samples::{TensorGrid, corners, corners_by_slopes, spread, step_validation, validation};
 pub use scan::ScanBounds;

@@ -104,13 +104,17 @@ pub fn union((a, of_a): (Range, f64), (b, of_b): (Range, f64)) -> (Range, f64) {
         return (a, of_a);
     }
     let range = Range { lower: least(a.lower, b.lower), upper: most(a.upper, b.upper) };
-    let outer = |x: f64, y: f64, end: f64| (x.max(y) - end).abs();
-    let above =
-        outer(a.upper + of_a, b.upper + of_b, range.upper).max(outer(a.upper - of_a, b.upper - of_b, range.upper));
-    let below =
-        outer(of_a - a.lower, of_b - b.lower, -range.lower).max(outer(-of_a - a.lower, -of_b - b.lower, -range.lower));
-    let error = if of_a.is_nan() || of_b.is_nan() { f64::NAN } else { above.max(below) };
-    (range, error)
+    let above = error_of_larger([a.upper, b.upper], [of_a, of_b]);
+    let below = error_of_larger([-a.lower, -b.lower], [of_a, of_b]);
+    (range, above.max(below))
+}
+
+/// How far the larger of two values may lie from the larger of the true ones, given the errors of both; NaN where one
+/// is not known.
+pub fn error_of_larger([a, b]: [f64; 2], [of_a, of_b]: [f64; 2]) -> f64 {
+    let [above, below] = [1.0, -1.0].map(|sign| (a + sign * of_a).max(b + sign * of_b) - a.max(b));
+    // `max` passes over NaN.
+    if of_a.is_nan() || of_b.is_nan() { f64::NAN } else { above.abs().max(below.abs()) }
 }
 
 /// Values that are looked at side by side.

@@ -1,6 +1,6 @@
 //! Ends of an output's range with the error of each, and which of them are a corner's.
 
-use crate::numerics::{Extent, Range, SAFETY_OF_SURROGATE};
+use crate::numerics::{Extent, Range, SAFETY_OF_SURROGATE, error_of_larger};
 
 /// An output's range in a part of the box.
 #[derive(Clone, Debug)]
@@ -35,7 +35,7 @@ impl Rival {
 impl Ends {
     /// Takes simulated values at corners for ends that are there.
     pub fn hold(&mut self, simulated: impl Fn(&[f64]) -> Option<f64>) {
-        let own = |end: usize| simulated(&self.extent.places[end]).filter(|_| self.is_corner[end]);
+        let own = |end: usize| if self.is_corner[end] { simulated(&self.extent.places[end]) } else { None };
         let [lower, upper] = [own(0), own(1)];
         self.errors = [lower.map_or(self.errors[0], |_| 0.0), upper.map_or(self.errors[1], |_| 0.0)];
         let Range { lower: low, upper: high } = self.extent.range;
@@ -46,12 +46,7 @@ impl Ends {
     pub fn or(mut self, other: Self) -> Self {
         let ends = |ends: &Self| [-ends.extent.range.lower, ends.extent.range.upper];
         for (end, (own, others)) in ends(&self).into_iter().zip(ends(&other)).enumerate() {
-            let [of_own, of_other] = [self.errors[end], other.errors[end]];
-            let outer = own.max(others);
-            let [above, below] = [1.0, -1.0].map(|sign| (own + sign * of_own).max(others + sign * of_other) - outer);
-            // `max` passes over NaN.
-            let is_known = !of_own.is_nan() && !of_other.is_nan();
-            self.errors[end] = if is_known { above.abs().max(below.abs()) } else { f64::NAN };
+            self.errors[end] = error_of_larger([own, others], [self.errors[end], other.errors[end]]);
             if others > own {
                 self.extent.places[end].clone_from(&other.extent.places[end]);
                 self.extent.spacing[end].clone_from(&other.extent.spacing[end]);

@@ -259,7 +259,7 @@ fn composed(
         let (time, closure) = (ensemble.time(row), closures[chosen[row]].as_ref());
         let row_of = BoxRow { domain, outputs: ensemble.outputs(), pieces, closure, time };
         let at_corner = |output: usize, xi: &[f64]| {
-            let corner = validation.points.iter().position(|point| point == xi && is_corner(xi))?;
+            let corner = validation.points.iter().position(|point| point == xi)?;
             Some(validation.direct.at(row, output)[corner]).filter(|value| value.is_finite())
         };
         let of_part = |(piece, lattice)| {
