@@ -22,9 +22,7 @@ pub(super) fn parts(job: &Job, worst: &[FunctionWitness], summary: &Summary, thr
     let options = MotionOptions {
         threads,
         size: study::REPORT_SIZE / job.share.max(1),
-        interruption: Interruption::new(&interrupt::asked),
-        between_events: study::is_between_events(summary),
-        formulation: summary.chosen_formulation.as_ref(),
+        ..MotionOptions::of_run(summary, Interruption::new(&interrupt::asked))
     };
     let motion = study::report_motion(&job.model, worst, options);
     let motion = motion.map(|mut found| {

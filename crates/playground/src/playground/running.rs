@@ -10,7 +10,7 @@ use crate::model::Reading;
 use crate::overview::{overview, plain, warnings};
 use crate::results::{Provenance, RunRequest};
 use crate::simulate::Interruption;
-use crate::study::{self, MotionOptions, Options, REPORT_SIZE, RunError};
+use crate::study::{self, MotionOptions, Options, RunError};
 
 /// What runs are told to.
 pub trait Host: Sync {
@@ -53,9 +53,7 @@ pub(super) fn run(reading: Reading, scene: Option<&str>, costly: bool, host: &dy
     let (bounds, summary) = study::run(&model, options)
         .map_err(|error| Unrun { waits: matches!(error, RunError::Costly(_)), why: error.to_string() })?;
     begin("motion for the report");
-    let (interruption, between_events) = (Interruption::new(&|| false), study::is_between_events(&summary));
-    let formulation = summary.chosen_formulation.as_ref();
-    let options = MotionOptions { threads: None, size: REPORT_SIZE, interruption, between_events, formulation };
+    let options = MotionOptions::of_run(&summary, Interruption::new(&|| false));
     let motion = study::report_motion(&model, &bounds.functions, options).map(|mut found| {
         read_meshes(&mut found.drawing, Path::new(""), MOST_TRIANGLES);
         found

@@ -24,9 +24,7 @@ pub fn answer(desk: &Desk) -> Answer {
 fn page(desk: &Desk, finished: &Finished) -> Result<Vec<u8>, ExportError> {
     let Finished { current, bounds, summary } = finished;
     let is_ended = || desk.is_old(current.number) && desk.is_replaced(current.number);
-    let (interruption, between_events) = (Interruption::new(&is_ended), study::is_between_events(summary));
-    let formulation = summary.chosen_formulation.as_ref();
-    let options = MotionOptions { threads: None, size: study::REPORT_SIZE, interruption, between_events, formulation };
+    let options = MotionOptions::of_run(summary, Interruption::new(&is_ended));
     let motion = study::report_motion(&current.description, &bounds.functions, options);
     let (beside, texts) = desk.texts(|texts| {
         let name = |path: &Path| path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());

@@ -78,7 +78,7 @@ pub use feasible::Survey;
 pub use fit::{DataError, FitError, Measurements, NoiseBound, fit};
 pub use gradient::{GradientError, gradient};
 pub use internal::{InternalError, caught, record_panics};
-pub use motion::{Grip, Hand, Held, MotionOptions, Movable, REPORT_SIZE, is_between_events, report_motion};
+pub use motion::{Grip, Hand, Held, MotionOptions, Movable, REPORT_SIZE, report_motion};
 pub use price::{Allowance, Memory, Price};
 pub use ready::{COMPILING, Ready, built, equations, ready};
 pub use sample::{ChosenSamples, Sampled, sample};

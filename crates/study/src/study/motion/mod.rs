@@ -44,15 +44,23 @@ pub struct MotionOptions<'a> {
     pub size: usize,
     /// Asked now and then whether to end.
     pub interruption: Interruption<'a>,
-    /// Whether motions are cut at events, as [`is_between_events`] tells of a run.
+    /// Whether motions are cut at events.
     pub between_events: bool,
     /// The formulation that was chosen for the model, where it is known: [`Summary::chosen_formulation`].
     pub formulation: Option<&'a FormulationInfo>,
 }
 
-/// Whether the motions of a run were cut at events.
-pub fn is_between_events(summary: &Summary) -> bool {
-    summary.integration == Integration::Segments.name()
+impl<'a> MotionOptions<'a> {
+    /// For a report of a run: cut at events where its motions were, in the formulation that was chosen for it.
+    pub fn of_run(summary: &'a Summary, interruption: Interruption<'a>) -> Self {
+        Self {
+            threads: None,
+            size: REPORT_SIZE,
+            interruption,
+            between_events: summary.integration == Integration::Segments.name(),
+            formulation: summary.chosen_formulation.as_ref(),
+        }
+    }
 }
 
 /// The motion of all bodies for a report, with those under the worst functions of excitations; or why there is none.
