@@ -37,7 +37,10 @@ pub use eval::interval::Interval;
 pub use eval::jet::JetMemory;
 pub use eval::taylor_model::ModelMemory;
 pub use eval::tile::{Tile, WIDTHS};
-pub use eval::{Adjoints, Ranges, Vectorise, instruction_set, interval, jet, math, sincos, taylor_model, vectorised};
+pub use eval::{
+    Adjoints, LaneWork, Ranges, Vectorise, in_lanes, instruction_set, interval, jet, lanes, lanes_mut, math, sincos,
+    taylor_model, vectorised,
+};
 pub use expr::{Binary, Builder, Expr, Graph, Node, Scalar, SparseMatrix, Spline, SplineError, Unary};
 pub use formula::{Formula, SyntaxError};
 pub use lower::{

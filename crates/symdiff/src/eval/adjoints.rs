@@ -21,7 +21,7 @@ use crate::eval::functions;
 use crate::eval::tile::{Record, Tile};
 use crate::eval::vectorised::{Vectorise, vectorised};
 use crate::expr::{Binary, Unary};
-use crate::lower::tape::{Op, Operands, Tape, TapePart};
+use crate::lower::tape::{Instructions, Op, Operands, Tape, TapePart};
 
 /// Adjoints of the registers of a [`Tile`]: for each register and lane the derivative of the lane's number by it.
 #[derive(Clone, Debug)]
@@ -146,34 +146,37 @@ impl<const W: usize, const C: usize> Vectorise for Reverse<'_, W, C> {
     #[inline(always)]
     fn run(mut self) {
         for &index in self.parts.iter().rev() {
-            let Some(TapePart::Run(op, operands)) = self.tape.part(&mut { index }) else { continue };
-            match op {
-                Op::Copy => self.each::<2>(operands, |_, _, by| [by, 0.0, 0.0]),
-                Op::MulAdd => self.each::<4>(operands, |[a, b, _], _, by| [times(by, b), times(by, a), by]),
-                Op::MulSub => self.each::<4>(operands, |[a, b, _], _, by| [times(by, b), times(by, a), -by]),
-                Op::NegMulAdd => self.each::<4>(operands, |[a, b, _], _, by| [-times(by, b), -times(by, a), by]),
-                Op::Select => self.each::<4>(operands, |[a, _, _], _, by| {
-                    [0.0, functions::select(a, by, 0.0), functions::select(a, 0.0, by)]
-                }),
-                Op::SinCos => self.sin_cos(operands),
-                Op::Binary(Binary::Add) => self.each::<3>(operands, |_, _, by| [by, by, 0.0]),
-                Op::Binary(Binary::Sub) => self.each::<3>(operands, |_, _, by| [by, -by, 0.0]),
-                Op::Binary(Binary::Mul) => {
-                    self.each::<3>(operands, |[a, b, _], _, by| [times(by, b), times(by, a), 0.0])
+            let Some(TapePart::Run(op, run)) = self.tape.part(&mut { index }) else { continue };
+            // SAFETY: `A` is each operation's arity.
+            unsafe {
+                match *op {
+                    Op::Copy => self.each::<2>(run, |_, _, by| [by, 0.0, 0.0]),
+                    Op::MulAdd => self.each::<4>(run, |[a, b, _], _, by| [times(by, b), times(by, a), by]),
+                    Op::MulSub => self.each::<4>(run, |[a, b, _], _, by| [times(by, b), times(by, a), -by]),
+                    Op::NegMulAdd => self.each::<4>(run, |[a, b, _], _, by| [-times(by, b), -times(by, a), by]),
+                    Op::Select => self.each::<4>(run, |[a, _, _], _, by| {
+                        [0.0, functions::select(a, by, 0.0), functions::select(a, 0.0, by)]
+                    }),
+                    Op::SinCos => self.sin_cos(run),
+                    Op::Binary(Binary::Add) => self.each::<3>(run, |_, _, by| [by, by, 0.0]),
+                    Op::Binary(Binary::Sub) => self.each::<3>(run, |_, _, by| [by, -by, 0.0]),
+                    Op::Binary(Binary::Mul) => {
+                        self.each::<3>(run, |[a, b, _], _, by| [times(by, b), times(by, a), 0.0])
+                    }
+                    Op::Binary(Binary::Div) => self.each::<3>(run, |[_, b, _], d, by| {
+                        let by_a = times(by, 1.0 / b);
+                        [by_a, -times(by_a, d), 0.0]
+                    }),
+                    Op::Unary(Unary::Neg) => self.each::<2>(run, |_, _, by| [-by, 0.0, 0.0]),
+                    Op::Unary(Unary::Sqrt) => self.each::<2>(run, |_, d, by| [times(by, 0.5 / d), 0.0, 0.0]),
+                    Op::Unary(function) => {
+                        self.each::<2>(run, |[a, _, _], d, by| [times(by, slope(function, a, d)), 0.0, 0.0]);
+                    }
+                    Op::Binary(function) => self.each::<3>(run, |[a, b, _], d, by| {
+                        let [by_a, by_b] = slopes(function, [a, b], d);
+                        [times(by, by_a), times(by, by_b), 0.0]
+                    }),
                 }
-                Op::Binary(Binary::Div) => self.each::<3>(operands, |[_, b, _], d, by| {
-                    let by_a = times(by, 1.0 / b);
-                    [by_a, -times(by_a, d), 0.0]
-                }),
-                Op::Unary(Unary::Neg) => self.each::<2>(operands, |_, _, by| [-by, 0.0, 0.0]),
-                Op::Unary(Unary::Sqrt) => self.each::<2>(operands, |_, d, by| [times(by, 0.5 / d), 0.0, 0.0]),
-                Op::Unary(function) => {
-                    self.each::<2>(operands, |[a, _, _], d, by| [times(by, slope(function, a, d)), 0.0, 0.0]);
-                }
-                Op::Binary(function) => self.each::<3>(operands, |[a, b, _], d, by| {
-                    let [by_a, by_b] = slopes(function, [a, b], d);
-                    [times(by, by_a), times(by, by_b), 0.0]
-                }),
             }
         }
     }
@@ -188,11 +191,15 @@ impl<const W: usize, const C: usize> Reverse<'_, W, C> {
         last
     }
 
-    /// Instructions of one operation (of `A` registers): shares of a, b, c in the adjoint of a result.
+    /// Instructions of one operation: shares of a, b, c in the adjoint of a result.
+    ///
+    /// # Safety
+    /// The operation has `A` registers.
     #[inline(always)]
-    fn each<const A: usize>(&mut self, operands: &[u32], shares: impl Fn([f64; 3], f64, f64) -> [f64; 3]) {
+    unsafe fn each<const A: usize>(&mut self, run: Instructions<'_>, shares: impl Fn([f64; 3], f64, f64) -> [f64; 3]) {
         let (memory, adjoints) = (self.memory, self.adjoints);
-        for Operands { a, b, c, d } in operands.chunks_exact(A).rev().map(Operands::of) {
+        // SAFETY: the caller's.
+        for Operands { a, b, c, d } in unsafe { run.of::<A>() }.rev() {
             let restored = self.next().as_ptr();
             let mut lane = 0;
             while lane < W {
@@ -226,10 +233,15 @@ impl<const W: usize, const C: usize> Reverse<'_, W, C> {
         }
     }
 
+    /// Instructions of [`Op::SinCos`].
+    ///
+    /// # Safety
+    /// They are.
     #[inline(always)]
-    fn sin_cos(&mut self, operands: &[u32]) {
+    unsafe fn sin_cos(&mut self, run: Instructions<'_>) {
         let (memory, adjoints) = (self.memory, self.adjoints);
-        for Operands { a, b, d, .. } in operands.chunks_exact(Op::SinCos.arity()).rev().map(Operands::of) {
+        // SAFETY: the caller's.
+        for Operands { a, b, d, .. } in unsafe { run.of::<{ Op::SinCos.arity() }>() }.rev() {
             let cosine_before = self.next().as_ptr();
             let sine_before = self.next().as_ptr();
             for lane in 0..W {

@@ -17,4 +17,4 @@ mod vectorised;
 
 pub use adjoints::Adjoints;
 pub use ranges::Ranges;
-pub use vectorised::{Vectorise, instruction_set, vectorised};
+pub use vectorised::{LaneWork, Vectorise, in_lanes, instruction_set, lanes, lanes_mut, vectorised};

@@ -15,6 +15,55 @@ pub fn vectorised<W: Vectorise>(work: W) -> W::Output {
     InstructionSet::detect().run(work)
 }
 
+/// Work over the lanes of a tile that is worth compiling for every width: its loops are over arrays of `W` values.
+pub trait LaneWork {
+    /// Does it. Mark it `#[inline(always)]`, as that of [`Vectorise`].
+    fn run<const W: usize>(self);
+}
+
+/// Does the work over the lanes of a tile of this width, one of [`WIDTHS`](crate::WIDTHS).
+#[inline]
+pub fn in_lanes<L: LaneWork>(width: usize, work: L) {
+    match width {
+        1 => vectorised(OfWidth::<1, L>(work)),
+        4 => vectorised(OfWidth::<4, L>(work)),
+        8 => vectorised(OfWidth::<8, L>(work)),
+        16 => vectorised(OfWidth::<16, L>(work)),
+        32 => vectorised(OfWidth::<32, L>(work)),
+        _ => vectorised(OfWidth::<64, L>(work)),
+    }
+}
+
+/// Work over `W` lanes.
+struct OfWidth<const W: usize, L>(L);
+
+impl<const W: usize, L: LaneWork> Vectorise for OfWidth<W, L> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        self.0.run::<W>();
+    }
+}
+
+/// Values of all `W` lanes.
+///
+/// # Panics
+/// If there are fewer.
+#[inline(always)]
+pub fn lanes<const W: usize, T>(values: &[T]) -> &[T; W] {
+    values.first_chunk().expect("there is a value for each lane")
+}
+
+/// The same, to be changed.
+///
+/// # Panics
+/// If there are fewer.
+#[inline(always)]
+pub fn lanes_mut<const W: usize, T>(values: &mut [T]) -> &mut [T; W] {
+    values.first_chunk_mut().expect("there is a value for each lane")
+}
+
 /// Name of the instruction set that [`vectorised`] takes on this machine.
 pub fn instruction_set() -> &'static str {
     match InstructionSet::detect() {

@@ -50,14 +50,14 @@ impl CWriter {
                     let _ = writeln!(text, "    if ({not}(r[{}] <= 0.0)) {{", region.condition);
                     ends.push(end);
                 }
-                TapePart::Run(op, operands) => {
-                    for registers in operands.chunks_exact(op.arity()) {
+                TapePart::Run(op, run) => {
+                    for operands in run.each(*op) {
                         if statements >= TUNING.statements_of_function && ends.is_empty() {
                             pieces.push(std::mem::take(&mut text));
                             statements = 0;
                         }
                         statements += 1;
-                        let _ = writeln!(text, "    {}", self.statement(op, Operands::of(registers)));
+                        let _ = writeln!(text, "    {}", self.statement(*op, operands));
                     }
                 }
             }

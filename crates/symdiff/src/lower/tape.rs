@@ -111,17 +111,44 @@ impl Region {
 enum Piece {
     Run {
         op: Op,
-        /// Range of the tape's operands.
+        /// Of the tape's operands, the first of the run.
         start: usize,
-        end: usize,
+        count: usize,
     },
     Region(Region),
 }
 
-/// What an evaluator meets: instructions of one operation, [`Op::arity`] registers each, or the beginning of a region.
+/// Instructions of one operation, or the beginning of a region.
 pub(crate) enum TapePart<'t> {
-    Run(Op, &'t [u32]),
+    Run(&'t Op, Instructions<'t>),
     Region(&'t Region),
+}
+
+/// Registers of instructions of one operation, [`Op::arity`] of each.
+#[derive(Clone, Copy)]
+pub(crate) struct Instructions<'t> {
+    /// Those of the run, and of all that follow.
+    registers: &'t [u32],
+    count: usize,
+}
+
+impl<'t> Instructions<'t> {
+    /// Instructions of this operation, the run's.
+    pub fn each(self, op: Op) -> impl Iterator<Item = Operands> {
+        self.registers.chunks_exact(op.arity()).take(self.count).map(Operands::of)
+    }
+
+    /// Instructions of operations of `A` registers, without the division that tells how many there are.
+    ///
+    /// # Safety
+    /// The run's operation has that many.
+    #[inline(always)]
+    pub unsafe fn of<const A: usize>(self) -> impl DoubleEndedIterator<Item = Operands> + use<'t, A> {
+        debug_assert!(self.count * A <= self.registers.len(), "a tape has all registers of its runs");
+        // SAFETY: `Tape::new` counts the instructions whose registers it adds, and each has `A` of them.
+        let registers = unsafe { std::slice::from_raw_parts(self.registers.as_ptr().cast::<[u32; A]>(), self.count) };
+        registers.iter().map(|registers| Operands::of(registers))
+    }
 }
 
 /// What a tape is made of.
@@ -159,10 +186,9 @@ impl Tape {
                     let start = tape.operands.len();
                     tape.operands.extend_from_slice(&[d, a, b, c][..op.arity()]);
                     tape.instructions += 1;
-                    let end = tape.operands.len();
                     match tape.pieces.last_mut() {
-                        Some(Piece::Run { op: last, end: last_end, .. }) if *last == op && joined => *last_end = end,
-                        _ => tape.pieces.push(Piece::Run { op, start, end }),
+                        Some(Piece::Run { op: last, count, .. }) if *last == op && joined => *count += 1,
+                        _ => tape.pieces.push(Piece::Run { op, start, count: 1 }),
                     }
                     joined = true;
                     tape.registers = tape.operands[start..]
@@ -197,7 +223,7 @@ impl Tape {
         let (mut index, mut count) = (0, 0);
         while let Some(part) = self.part(&mut index) {
             match part {
-                TapePart::Run(op, operands) => count += operands.len() / op.arity(),
+                TapePart::Run(_, instructions) => count += instructions.count,
                 TapePart::Region(region) => {
                     region.skip_unless(region.wants(if positive { 1.0 } else { 0.0 }), &mut index)
                 }
@@ -209,7 +235,7 @@ impl Tape {
     /// Number of instructions of the operations that are asked for.
     pub fn count(&self, of: impl Fn(Op) -> bool) -> usize {
         let runs = self.pieces.iter().filter_map(|piece| match piece {
-            Piece::Run { op, start, end } if of(*op) => Some((end - start) / op.arity()),
+            Piece::Run { op, count, .. } if of(*op) => Some(*count),
             _ => None,
         });
         runs.sum()
@@ -236,7 +262,11 @@ impl Tape {
         let piece = self.pieces.get(*index)?;
         *index += 1;
         Some(match piece {
-            Piece::Run { op, start, end } => TapePart::Run(*op, &self.operands[*start..*end]),
+            Piece::Run { op, start, count } => {
+                // SAFETY: `new` adds the operands that begin there, and takes none away.
+                let registers = unsafe { self.operands.get_unchecked(*start..) };
+                TapePart::Run(op, Instructions { registers, count: *count })
+            }
             Piece::Region(region) => TapePart::Region(region),
         })
     }

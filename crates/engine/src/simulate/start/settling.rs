@@ -1,7 +1,7 @@
 //! Newton's corrections of a tile until every lane has settled.
 
 use super::tuning::TUNING;
-use symdiff::{Tile, Vectorise, vectorised};
+use symdiff::{LaneWork, Tile, in_lanes, lanes_mut};
 
 /// Record of each lane's corrections.
 #[derive(Debug)]
@@ -31,7 +31,7 @@ impl Settling {
         let width = tile.width();
         let (known, found) = tile.values_mut().split_at_mut(corrections * width);
         let (known, found) = (&mut known[values * width..][..count * width], &found[..count * width]);
-        vectorised(Apply { settling: self, width, known, corrections: found, scale });
+        in_lanes(width, Apply { settling: self, known, corrections: found, scale });
         self.pending.contains(&true)
     }
 
@@ -43,20 +43,18 @@ impl Settling {
 
 struct Apply<'a> {
     settling: &'a mut Settling,
-    width: usize,
     known: &'a mut [f64],
     corrections: &'a [f64],
     scale: &'a [f64],
 }
 
-impl Vectorise for Apply<'_> {
-    type Output = ();
-
+impl LaneWork for Apply<'_> {
     #[inline(always)]
-    fn run(self) {
-        let Self { settling: Settling { pending, size, last }, width, known, corrections, scale } = self;
-        size.fill(0.0);
-        let rows = known.chunks_exact_mut(width).zip(corrections.chunks_exact(width));
+    fn run<const W: usize>(self) {
+        let Self { settling: Settling { pending, size, last }, known, corrections, scale } = self;
+        let (pending, size) = (lanes_mut::<W, _>(pending), lanes_mut::<W, _>(size));
+        *size = [0.0; W];
+        let rows = known.as_chunks_mut::<W>().0.iter_mut().zip(corrections.as_chunks::<W>().0);
         for ((values, corrections), scale) in rows.zip(scale.iter().chain(std::iter::repeat(&1.0))) {
             let lanes = values.iter_mut().zip(corrections).zip(size.iter_mut()).zip(pending.iter());
             for (((value, correction), size), pending) in lanes {
@@ -66,7 +64,7 @@ impl Vectorise for Apply<'_> {
                 *size = if relative > *size { relative } else { *size };
             }
         }
-        for ((pending, size), last) in pending.iter_mut().zip(size.iter()).zip(last.iter_mut()) {
+        for ((pending, size), last) in pending.iter_mut().zip(size.iter()).zip(lanes_mut::<W, _>(last)) {
             let is_rounding = *size <= TUNING.stalled && *size >= 0.5 * *last;
             *pending &= *size > TUNING.settled && !is_rounding;
             *last = *size;

@@ -6,7 +6,7 @@
 //! one. Every decision is a lane's own or counts steps and iterations, so that a sample's numbers do not depend on the
 //! samples that share its tile.
 
-use symdiff::{Tile, Vectorise, vectorised};
+use symdiff::{LaneWork, Tile, in_lanes, lanes, lanes_mut};
 
 use super::pivots::Watch;
 use super::prediction::Predict;
@@ -145,7 +145,7 @@ impl Newton {
             _ => ([3.0, -3.0, 1.0], last, second_last),
         };
         let values = [&self.start[..], last, second_last];
-        vectorised(Predict { program, tile, pending: lanes, weights, values });
+        in_lanes(tile.width(), Predict { program, tile, pending: lanes, weights, values });
         for &register in &program.redundant {
             for (value, _) in tile.lane_mut(register).iter_mut().zip(lanes).filter(|(_, chosen)| **chosen) {
                 *value = 0.0;
@@ -167,7 +167,7 @@ impl Newton {
     }
 
     fn iterate(&mut self, program: &Program, tile: &mut Tile, h: f64) {
-        let gain = program.coefficients.position_gain(h);
+        let (width, gain) = (tile.width(), program.coefficients.position_gain(h));
         for count in 0..TUNING.max_corrections {
             if count >= TUNING.frozen_corrections {
                 self.is_renewed = true;
@@ -175,7 +175,7 @@ impl Newton {
             }
             if count == 0 || count >= TUNING.frozen_corrections {
                 tile.run(program.factor());
-                vectorised(Watch { watched: &program.watched, tile, singular: &mut self.singular });
+                in_lanes(width, Watch { watched: &program.watched, tile, singular: &mut self.singular });
                 tile.run(program.first_correction());
             } else {
                 tile.run(program.correct());
@@ -183,15 +183,16 @@ impl Newton {
             if self.pending.iter().zip(&self.singular).any(|(pending, singular)| *pending && *singular) {
                 self.correct_singular(program, tile, gain, count);
             }
-            vectorised(Apply { program, tile, gain, pending: &self.pending, norm: &mut self.norm });
+            in_lanes(width, Apply { program, tile, gain, pending: &self.pending, norm: &mut self.norm });
             self.counters.iterations += self.pending.iter().map(|&pending| u64::from(pending)).sum::<u64>();
-            vectorised(TestConvergence {
+            let test = TestConvergence {
                 count,
                 norm: &self.norm,
                 last: &mut self.last,
                 contraction: &mut self.contraction,
                 pending: &mut self.pending,
-            });
+            };
+            in_lanes(width, test);
             if !self.pending.contains(&true) {
                 return;
             }
@@ -207,7 +208,7 @@ impl Newton {
             self.factor_apart(program, tile, h, &converged);
         }
         tile.run(program.correct());
-        vectorised(Apply { program, tile, gain, pending: &converged, norm: &mut self.norm });
+        in_lanes(tile.width(), Apply { program, tile, gain, pending: &converged, norm: &mut self.norm });
         self.counters.iterations += converged.iter().map(|&converged| u64::from(converged)).sum::<u64>();
     }
 
@@ -282,20 +283,18 @@ struct Apply<'a> {
     norm: &'a mut [f64],
 }
 
-impl Vectorise for Apply<'_> {
-    type Output = ();
-
+impl LaneWork for Apply<'_> {
     #[inline(always)]
-    fn run(self) {
+    fn run<const W: usize>(self) {
         let Self { program, tile, gain, pending, norm } = self;
         let layout = &program.layout;
-        let width = tile.width();
-        norm.fill(0.0);
-        let (known, corrections) = tile.values_mut().split_at_mut(layout.correction.start * width);
-        let (known, iterates) = known.split_at_mut(layout.iterate.start * width);
-        let multipliers = &mut known[layout.lambda.start * width..];
+        let (pending, norm) = (lanes::<W, _>(pending), lanes_mut::<W, _>(norm));
+        *norm = [0.0; W];
+        let (known, corrections) = tile.values_mut().split_at_mut(layout.correction.start * W);
+        let (known, iterates) = known.split_at_mut(layout.iterate.start * W);
+        let multipliers = &mut known[layout.lambda.start * W..];
         let (of_accelerations, of_multipliers) = corrections.split_at(iterates.len());
-        let rows = iterates.chunks_exact_mut(width).zip(of_accelerations.chunks_exact(width));
+        let rows = iterates.as_chunks_mut::<W>().0.iter_mut().zip(of_accelerations.as_chunks::<W>().0);
         for ((iterate, correction), scale) in rows.zip(&program.scale) {
             add(pending, correction, iterate);
             let weight = gain / scale;
@@ -305,7 +304,8 @@ impl Vectorise for Apply<'_> {
                 *norm = if size <= *norm || norm.is_nan() { *norm } else { size };
             }
         }
-        for (lambda, correction) in multipliers.chunks_exact_mut(width).zip(of_multipliers.chunks_exact(width)) {
+        let multipliers = multipliers.as_chunks_mut::<W>().0.iter_mut();
+        for (lambda, correction) in multipliers.zip(of_multipliers.as_chunks::<W>().0) {
             add(pending, correction, lambda);
         }
     }
@@ -313,7 +313,7 @@ impl Vectorise for Apply<'_> {
 
 /// Adds to the chosen lanes.
 #[inline(always)]
-fn add(chosen: &[bool], change: &[f64], to: &mut [f64]) {
+fn add<const W: usize>(chosen: &[bool; W], change: &[f64; W], to: &mut [f64; W]) {
     for ((to, change), chosen) in to.iter_mut().zip(change).zip(chosen) {
         *to = if *chosen { *to + change } else { *to };
     }
@@ -328,13 +328,12 @@ struct TestConvergence<'a> {
     pending: &'a mut [bool],
 }
 
-impl Vectorise for TestConvergence<'_> {
-    type Output = ();
-
+impl LaneWork for TestConvergence<'_> {
     #[inline(always)]
-    fn run(self) {
-        let lanes = self.pending.iter_mut().zip(self.last).zip(self.contraction).zip(self.norm);
-        for (((pending, last), expected), &norm) in lanes {
+    fn run<const W: usize>(self) {
+        let (pending, last) = (lanes_mut::<W, _>(self.pending), lanes_mut::<W, _>(self.last));
+        let (contraction, norm) = (lanes_mut::<W, _>(self.contraction), lanes::<W, _>(self.norm));
+        for (((pending, last), expected), &norm) in pending.iter_mut().zip(last).zip(contraction).zip(norm) {
             let contraction = if self.count == 0 { *expected } else { norm / *last };
             let seen = (TUNING.contraction_safety * contraction).max(TUNING.least_contraction);
             *expected = if self.count == 1 && *pending { seen } else { *expected };

@@ -1,6 +1,6 @@
 //! What Newton's iteration of a step starts from.
 
-use symdiff::{Tile, Vectorise};
+use symdiff::{LaneWork, Tile, lanes};
 
 use crate::compile::Program;
 
@@ -13,21 +13,22 @@ pub(super) struct Predict<'a> {
     pub values: [&'a [f64]; 3],
 }
 
-impl Vectorise for Predict<'_> {
-    type Output = ();
-
+impl LaneWork for Predict<'_> {
     #[inline(always)]
-    fn run(self) {
+    fn run<const W: usize>(self) {
         let layout = &self.program.layout;
-        let width = self.tile.width();
-        let ([a, b, c], [now, last, second_last]) = (self.weights, self.values);
-        let targets = layout.iterate.clone().chain(layout.lambda.clone());
-        for (index, register) in targets.enumerate() {
-            let [now, last, second_last] = [now, last, second_last].map(|values| &values[index * width..][..width]);
-            let values = self.tile.lane_mut(register);
-            for lane in 0..width {
-                let predicted = a * now[lane] + (b * last[lane] + c * second_last[lane]);
-                values[lane] = if self.pending[lane] { predicted } else { values[lane] };
+        let (pending, [a, b, c]) = (lanes::<W, _>(self.pending), self.weights);
+        let [now, last, second_last] = self.values.map(|values| values.as_chunks::<W>().0);
+        let (accelerations, multipliers) = (layout.iterate.clone(), layout.lambda.clone());
+        let ends = accelerations.len();
+        for (registers, values) in [(accelerations, 0..ends), (multipliers, ends..now.len())] {
+            let targets = self.tile.block_mut(registers).as_chunks_mut::<W>().0.iter_mut();
+            let before = now[values.clone()].iter().zip(&last[values.clone()]).zip(&second_last[values]);
+            for (target, ((now, last), second_last)) in targets.zip(before) {
+                for lane in 0..W {
+                    let predicted = a * now[lane] + (b * last[lane] + c * second_last[lane]);
+                    target[lane] = if pending[lane] { predicted } else { target[lane] };
+                }
             }
         }
     }

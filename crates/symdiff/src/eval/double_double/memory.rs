@@ -2,7 +2,7 @@
 
 use super::DoubleDouble;
 use super::functions::{binary, sin_cos, unary};
-use crate::lower::tape::{Op, Operands, Tape, TapePart};
+use crate::lower::tape::{Op, Tape, TapePart};
 
 /// Memory of a program for one sample.
 #[derive(Clone, Debug)]
@@ -38,14 +38,14 @@ impl DoubleDoubleMemory {
         let values = &mut self.values;
         let mut index = 0;
         while let Some(part) = tape.part(&mut index) {
-            let (op, operands) = match part {
-                TapePart::Run(op, operands) => (op, operands),
+            let (op, run) = match part {
+                TapePart::Run(op, run) => (*op, run),
                 TapePart::Region(region) => {
                     region.skip_unless(region.wants(values[region.condition as usize].to_f64()), &mut index);
                     continue;
                 }
             };
-            for operand in operands.chunks_exact(op.arity()).map(Operands::of) {
+            for operand in run.each(op) {
                 let [a, b, c] = [operand.a, operand.b, operand.c].map(|register| values[register as usize]);
                 values[operand.d as usize] = match op {
                     Op::Copy => a,

@@ -1,7 +1,7 @@
 //! The evaluator over jets: the same tapes, with a truncated polynomial in every slot.
 
 use crate::eval::jet::{JetScratch, JetSpace};
-use crate::lower::tape::{Op, Operands, Tape, TapePart};
+use crate::lower::tape::{Op, Tape, TapePart};
 
 /// Memory of a program for one sample whose values are polynomials in the uncertain parameters.
 #[derive(Clone, Debug)]
@@ -53,15 +53,15 @@ impl<'s> JetMemory<'s> {
         let Self { space, scratch, values, first, second } = self;
         let mut index = 0;
         while let Some(part) = tape.part(&mut index) {
-            let (op, operands) = match part {
-                TapePart::Run(op, operands) => (op, operands),
+            let (op, run) = match part {
+                TapePart::Run(op, run) => (*op, run),
                 TapePart::Region(region) => {
                     let condition = values[region.condition as usize * length];
                     region.skip_unless(region.wants(condition), &mut index);
                     continue;
                 }
             };
-            for operand in operands.chunks_exact(op.arity()).map(Operands::of) {
+            for operand in run.each(op) {
                 let jet = |register: u32| &values[register as usize * length..][..length];
                 let (a, b, c) = (jet(operand.a), jet(operand.b), jet(operand.c));
                 match op {

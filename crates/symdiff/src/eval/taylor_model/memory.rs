@@ -2,7 +2,7 @@
 
 use crate::eval::interval::Interval;
 use crate::eval::taylor_model::{ModelScratch, ModelSpace};
-use crate::lower::tape::{Op, Operands, Tape, TapePart};
+use crate::lower::tape::{Op, Tape, TapePart};
 
 /// Memory of a program whose values are enclosed over a whole box of parameters.
 #[derive(Clone, Debug)]
@@ -48,8 +48,8 @@ impl<'s> ModelMemory<'s> {
         let Self { space, scratch, values, first, second } = self;
         let mut index = 0;
         while let Some(part) = tape.part(&mut index) {
-            let (op, operands) = match part {
-                TapePart::Run(op, operands) => (op, operands),
+            let (op, run) = match part {
+                TapePart::Run(op, run) => (*op, run),
                 TapePart::Region(region) => {
                     // Undecided is neither.
                     let sign = space.sign(&values[region.condition as usize * size..][..size]);
@@ -57,7 +57,7 @@ impl<'s> ModelMemory<'s> {
                     continue;
                 }
             };
-            for operand in operands.chunks_exact(op.arity()).map(Operands::of) {
+            for operand in run.each(op) {
                 let model = |register: u32| &values[register as usize * size..][..size];
                 let (a, b, c) = (model(operand.a), model(operand.b), model(operand.c));
                 match op {

@@ -12,7 +12,7 @@ use crate::eval::functions;
 use crate::eval::sincos;
 use crate::eval::vectorised::{InstructionSet, Vectorise};
 use crate::expr::{Binary, Unary};
-use crate::lower::tape::{Op, Operands, Region, Tape, TapePart};
+use crate::lower::tape::{Instructions, Op, Region, Tape, TapePart};
 
 pub(crate) use record::Record;
 use record::{Keep, Nothing};
@@ -159,10 +159,10 @@ impl<const W: usize, const C: usize, K: Keep> Vectorise for Interpretation<'_, W
 unsafe fn interpret<const W: usize, const C: usize, K: Keep>(tape: &Tape, memory: *mut f64, keep: &mut K) {
     let mut index = 0;
     while let Some(part) = tape.part(&mut index) {
-        let (op, operands) = match part {
-            TapePart::Run(op, operands) => {
+        let (op, run) = match part {
+            TapePart::Run(op, run) => {
                 keep.run(index - 1);
-                (op, operands)
+                (op, run)
             }
             TapePart::Region(region) => {
                 // SAFETY: the caller's.
@@ -170,36 +170,34 @@ unsafe fn interpret<const W: usize, const C: usize, K: Keep>(tape: &Tape, memory
                 continue;
             }
         };
-        // SAFETY: the caller's.
+        // SAFETY: the caller's; `A` is each operation's arity.
         unsafe {
-            match op {
-                Op::Copy => each::<W, C, 2, K>(operands, memory, keep, |a, _, _| a),
-                Op::MulAdd => each::<W, C, 4, K>(operands, memory, keep, |a, b, c| a * b + c),
-                Op::MulSub => each::<W, C, 4, K>(operands, memory, keep, |a, b, c| a * b - c),
-                Op::NegMulAdd => each::<W, C, 4, K>(operands, memory, keep, |a, b, c| c - a * b),
-                Op::Binary(Binary::Add) => each::<W, C, 3, K>(operands, memory, keep, |a, b, _| a + b),
-                Op::Binary(Binary::Sub) => each::<W, C, 3, K>(operands, memory, keep, |a, b, _| a - b),
-                Op::Binary(Binary::Mul) => each::<W, C, 3, K>(operands, memory, keep, |a, b, _| a * b),
-                Op::Select => each::<W, C, 4, K>(operands, memory, keep, functions::select),
+            match *op {
+                Op::Copy => each::<W, C, 2, K>(run, memory, keep, |a, _, _| a),
+                Op::MulAdd => each::<W, C, 4, K>(run, memory, keep, |a, b, c| a * b + c),
+                Op::MulSub => each::<W, C, 4, K>(run, memory, keep, |a, b, c| a * b - c),
+                Op::NegMulAdd => each::<W, C, 4, K>(run, memory, keep, |a, b, c| c - a * b),
+                Op::Binary(Binary::Add) => each::<W, C, 3, K>(run, memory, keep, |a, b, _| a + b),
+                Op::Binary(Binary::Sub) => each::<W, C, 3, K>(run, memory, keep, |a, b, _| a - b),
+                Op::Binary(Binary::Mul) => each::<W, C, 3, K>(run, memory, keep, |a, b, _| a * b),
+                Op::Select => each::<W, C, 4, K>(run, memory, keep, functions::select),
                 Op::Binary(Binary::Select) => {
-                    each::<W, C, 3, K>(operands, memory, keep, |a, b, _| functions::select(a, b, 0.0))
+                    each::<W, C, 3, K>(run, memory, keep, |a, b, _| functions::select(a, b, 0.0))
                 }
                 Op::Binary(Binary::SelectElse) => {
-                    each::<W, C, 3, K>(operands, memory, keep, |a, b, _| functions::select(a, 0.0, b))
+                    each::<W, C, 3, K>(run, memory, keep, |a, b, _| functions::select(a, 0.0, b))
                 }
-                Op::Binary(Binary::Min) => each::<W, C, 3, K>(operands, memory, keep, |a, b, _| functions::min(a, b)),
-                Op::Binary(Binary::Max) => each::<W, C, 3, K>(operands, memory, keep, |a, b, _| functions::max(a, b)),
-                Op::Binary(Binary::Div) => each::<W, C, 3, K>(operands, memory, keep, |a, b, _| a / b),
-                Op::Unary(Unary::Neg) => each::<W, C, 2, K>(operands, memory, keep, |a, _, _| -a),
-                Op::Unary(Unary::Abs) => each::<W, C, 2, K>(operands, memory, keep, |a, _, _| a.abs()),
-                Op::Unary(Unary::Sqrt) => each::<W, C, 2, K>(operands, memory, keep, |a, _, _| a.sqrt()),
-                Op::Unary(function) => {
-                    each::<W, 1, 2, K>(operands, memory, keep, |a, _, _| functions::unary(function, a))
-                }
+                Op::Binary(Binary::Min) => each::<W, C, 3, K>(run, memory, keep, |a, b, _| functions::min(a, b)),
+                Op::Binary(Binary::Max) => each::<W, C, 3, K>(run, memory, keep, |a, b, _| functions::max(a, b)),
+                Op::Binary(Binary::Div) => each::<W, C, 3, K>(run, memory, keep, |a, b, _| a / b),
+                Op::Unary(Unary::Neg) => each::<W, C, 2, K>(run, memory, keep, |a, _, _| -a),
+                Op::Unary(Unary::Abs) => each::<W, C, 2, K>(run, memory, keep, |a, _, _| a.abs()),
+                Op::Unary(Unary::Sqrt) => each::<W, C, 2, K>(run, memory, keep, |a, _, _| a.sqrt()),
+                Op::Unary(function) => each::<W, 1, 2, K>(run, memory, keep, |a, _, _| functions::unary(function, a)),
                 Op::Binary(function) => {
-                    each::<W, 1, 3, K>(operands, memory, keep, |a, b, _| functions::binary(function, a, b))
+                    each::<W, 1, 3, K>(run, memory, keep, |a, b, _| functions::binary(function, a, b))
                 }
-                Op::SinCos => sin_cos::<W, C, K>(operands, memory, keep),
+                Op::SinCos => sin_cos::<W, C, K>(run, memory, keep),
             }
         }
     }
@@ -208,12 +206,13 @@ unsafe fn interpret<const W: usize, const C: usize, K: Keep>(tape: &Tape, memory
 /// `d = function(a, b, c)` for each instruction (of `A` registers) and lane.
 #[inline(always)]
 unsafe fn each<const W: usize, const C: usize, const A: usize, K: Keep>(
-    operands: &[u32],
+    run: Instructions<'_>,
     memory: *mut f64,
     keep: &mut K,
     function: impl Fn(f64, f64, f64) -> f64,
 ) {
-    for operand in operands.chunks_exact(A).map(Operands::of) {
+    // SAFETY: `A` is the operation's arity (the caller's promise).
+    for operand in unsafe { run.of::<A>() } {
         // SAFETY: registers are in range (the caller's promise).
         unsafe { keep.register::<W>(memory, operand.d) };
         let mut lane = 0;
@@ -244,8 +243,9 @@ unsafe fn wanted<const W: usize>(region: &Region, memory: *mut f64) -> bool {
 
 /// `d = sin a`, `b = cos a` for each instruction and lane.
 #[inline(always)]
-unsafe fn sin_cos<const W: usize, const C: usize, K: Keep>(operands: &[u32], memory: *mut f64, keep: &mut K) {
-    for operand in operands.chunks_exact(Op::SinCos.arity()).map(Operands::of) {
+unsafe fn sin_cos<const W: usize, const C: usize, K: Keep>(run: Instructions<'_>, memory: *mut f64, keep: &mut K) {
+    // SAFETY: the operation's arity (the run is one of it, the caller's promise).
+    for operand in unsafe { run.of::<{ Op::SinCos.arity() }>() } {
         // SAFETY: registers are in range (the caller's promise).
         unsafe {
             keep.register::<W>(memory, operand.d);
