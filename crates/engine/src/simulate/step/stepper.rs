@@ -92,7 +92,7 @@ impl<'p> Stepper<'p> {
     }
 
     /// Largest |1/pivot| of a lane's last factors, over the largest that is trusted.
-    pub(in crate::simulate) fn pivot_loss(&self, lane: usize) -> f64 {
+    pub fn pivot_loss(&self, lane: usize) -> f64 {
         let value = |register: usize| self.tile.lane(register)[lane];
         let watched = self.program.watched.iter();
         let used = watched.filter(|watched| watched.mode.is_none_or(|mode| mode.holds(value(mode.register))));

@@ -7,6 +7,7 @@ use std::f64::consts::PI;
 use rustc_hash::{FxHashMap, FxHashSet};
 use symdiff::{Binary, Expr, Graph, Node, Unary};
 
+use crate::assemble::System;
 use crate::simulate::simulator::Simulator;
 
 /// Functions of the time, over the symbols of `graph`.
@@ -30,10 +31,8 @@ struct Dependence {
 /// The functions of the time in the equations of motion; `None` where there are none.
 pub(super) fn functions(simulator: &Simulator) -> Option<Functions> {
     let system = &simulator.system;
-    let mut roots: Vec<Expr> = system.mass.iter().map(|&(_, _, value)| value).collect();
-    roots.extend(system.inertia.iter().chain(&system.force));
-    let moving = [&roots, &system.constraint].map(|roots| system.graph.symbols_of(roots).contains(&system.time));
-    if moving == [false; 2] {
+    let roots = forces(system);
+    if !depends_on_time(system) {
         return None;
     }
     let mut graph = system.graph.clone();
@@ -55,6 +54,18 @@ pub(super) fn functions(simulator: &Simulator) -> Option<Functions> {
     let within: Vec<Expr> = all.iter().map(|&(term, _)| term).collect();
     let conditions = conditions(&mut graph, system.time, &within);
     Some(Functions { graph, terms: all, conditions })
+}
+
+/// Whether the time itself is in the equations of motion or in constraints.
+pub fn depends_on_time(system: &System) -> bool {
+    let is_in = |roots: &[Expr]| system.graph.symbols_of(roots).contains(&system.time);
+    is_in(&forces(system)) || is_in(&system.constraint)
+}
+
+/// What is in the equations of motion: masses and forces.
+fn forces(system: &System) -> Vec<Expr> {
+    let mass = system.mass.iter().map(|&(_, _, value)| value);
+    mass.chain(system.inertia.iter().chain(&system.force).copied()).collect()
 }
 
 /// The largest subexpressions of time and parameters alone; and the smallest nonlinear functions of both time and

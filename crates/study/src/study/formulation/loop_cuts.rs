@@ -6,6 +6,8 @@
 
 use std::collections::BTreeSet;
 
+use rayon::prelude::*;
+
 use super::comparison::{instructions, starts_alike};
 use crate::assemble::{self, Questions};
 use crate::simulate::Simulator;
@@ -19,7 +21,7 @@ pub fn shortest(
     questions: &Questions,
     first: &Simulator,
     with_roots: bool,
-    compile: impl Fn(&Questions, &Simulator) -> Option<Simulator>,
+    compile: impl Fn(&Questions, &Simulator) -> Option<Simulator> + Sync,
 ) -> Option<Simulator> {
     let is_regular = |simulator: &Simulator| {
         simulator.mobility.redundant.is_empty() && simulator.mobility.singular_at_start.is_empty()
@@ -35,19 +37,24 @@ pub fn shortest(
         let least = instructions(best);
         let current = questions.cut_at(best.system.formulation.cut.clone());
         let roots = if with_roots { assemble::cuts_of_several_axes(&current) } else { Vec::new() };
-        for cut in assemble::other_cuts(&current).into_iter().chain(roots) {
-            if spent + least > TUNING.cut_instructions {
-                return shorter;
-            }
-            if !tried.insert(cut.clone()) {
-                continue;
-            }
-            let other = compile(&questions.cut_at(cut), best);
-            spent += other.as_ref().map_or(least, instructions);
-            let is_shorter = |other: &Simulator| instructions(other) < least && is_regular(other);
-            if let Some(other) = other.filter(|other| is_shorter(other) && starts_alike(best, other)) {
-                shorter = Some(other);
-                continue 'exchanges;
+        let cuts = assemble::other_cuts(&current).into_iter().chain(roots).filter(|cut| !tried.contains(cut));
+        // What follows a shorter one is compiled for nothing, and not counted.
+        let at_once = rayon::current_num_threads().min(TUNING.cuts_at_once);
+        for cuts in cuts.collect::<Vec<_>>().chunks(at_once) {
+            let others = cuts.par_iter().map(|cut| compile(&questions.cut_at(cut.clone()), best));
+            for (cut, other) in cuts.iter().zip(others.collect::<Vec<_>>()) {
+                if spent + least > TUNING.cut_instructions {
+                    return shorter;
+                }
+                if !tried.insert(cut.clone()) {
+                    continue;
+                }
+                spent += other.as_ref().map_or(least, instructions);
+                let is_shorter = |other: &Simulator| instructions(other) < least && is_regular(other);
+                if let Some(other) = other.filter(|other| is_shorter(other) && starts_alike(best, other)) {
+                    shorter = Some(other);
+                    continue 'exchanges;
+                }
             }
         }
         return shorter;

@@ -4,34 +4,55 @@ use super::tuning::TUNING;
 use crate::assemble::Questions;
 use crate::model::Stepping;
 use crate::numerics::Sample;
-use crate::simulate::{Schedule, Simulator, SingularWatch, Stepper};
+use crate::simulate::{Simulator, SingularWatch, Stepper};
 
 /// Whether the nominal motion passes a singular configuration, or does not get to its end: there joint coordinates
-/// amplify rounding more the shorter the steps are.
+/// amplify rounding more the shorter the steps are. Steps are as long as their errors allow, and never shorter than the
+/// model's; those over switches and narrow forces are not, whose errors say little.
 pub fn passes_singular(questions: &Questions, simulator: &Simulator) -> bool {
     let simulation = &questions.description.simulation;
     if simulator.system.analysis.is_without_steps() {
         return false;
     }
-    let step = match simulation.stepping {
+    let shortest = match simulation.stepping {
         Stepping::Fixed(step) => step,
         Stepping::Tolerance(_) => TUNING.longest_look.min(simulation.output_step),
     };
-    let step = step.max(simulation.duration / TUNING.looks);
-    let steps = (simulation.output_step / step).round().max(1.0);
-    let schedule = Schedule::fixed(simulation.duration, simulation.output_step / steps, simulation.output_step);
+    let shortest = shortest.max(simulation.duration / TUNING.looks);
+    let is_smooth = simulator.is_smooth();
+    let longest = if is_smooth { simulation.duration / TUNING.least_looks } else { shortest };
     let nominal: Sample = simulator.system.parameters.iter().map(|parameter| parameter.nominal).collect();
-    let Ok(start) = simulator.assemble(1, schedule.first_step(), |_| nominal.clone()) else { return true };
+    let Ok(start) = simulator.assemble(1, shortest, |_| nominal.clone()) else { return true };
     let mut stepper = Stepper::new(&simulator.program, &start);
+    if is_smooth {
+        stepper.estimate_errors();
+    }
     let mut watch = SingularWatch::new(simulator, &stepper);
-    for (h, end) in (0..schedule.rows).flat_map(|row| schedule.steps_to(row)) {
-        if !stepper.step(h, end).is_empty() {
+    let (mut time, mut step) = (0.0, shortest);
+    while time < simulation.duration * (1.0 - f64::EPSILON) {
+        let h = step.min(simulation.duration - time);
+        if h > shortest {
+            stepper.set_step_size(h);
+            let before = stepper.save();
+            let is_within = stepper.try_step(h, time + h)[0] && stepper.local_errors()[0].size <= TUNING.error_of_look;
+            if !is_within {
+                stepper.rewind(&before, h);
+                step = (0.5 * h).max(shortest);
+                continue;
+            }
+        } else if !stepper.step(h, time + h).is_empty() {
             return true;
         }
-        watch.look(&stepper, end);
+        time += h;
+        watch.look(&stepper, time);
         if watch.has_passed() {
             return true;
         }
+        // The error is of third order.
+        let ratio = stepper.local_errors().first().map_or(f64::INFINITY, |error| error.size / TUNING.error_of_look);
+        let is_near = stepper.pivot_loss(0) > TUNING.pivot_of_long_look;
+        let wanted = if is_near { shortest } else { h * (0.9 / ratio.cbrt()).clamp(0.5, 2.0) };
+        step = wanted.min(longest).max(shortest);
     }
     false
 }

@@ -10,6 +10,8 @@ tuning! {
         alike: f64 = 1e-6, moves "coordinates of mechanisms with loops";
         /// Instructions of steps that are compiled in search of a shorter cut: in some hundredths of a second.
         cut_instructions: usize = 20_000, moves "cuts of loops, and so the last digits";
+        /// Cuts that are compiled at once, if there are threads for them.
+        cuts_at_once: usize = 2, moves "nothing: the time to choose a cut";
         /// Joints on the way from a body to its root, on average, beyond which joint coordinates are not tried, in the
         /// plane and in space: long planar chains are as short in absolute coordinates, in space they never are.
         deepest: [usize; 2] = [25, usize::MAX], moves "choice of coordinates of long chains";
@@ -33,6 +35,14 @@ tuning! {
         longest_look: f64 = 1e-3, moves "choice of coordinates of loops";
         /// Most steps of that search.
         looks: f64 = 10_000.0, moves "choice of coordinates of loops";
+        /// Least steps of it.
+        least_looks: f64 = 100.0, moves "choice of coordinates of loops";
+        /// Most local error of a step that is longer than the model's, relative to the coordinate: a hundred steps a
+        /// turn.
+        error_of_look: f64 = 1e-5, moves "choice of coordinates of loops";
+        /// Part that a pivot has lost of the range between its size at the pivot samples (1e-10) and the smallest that
+        /// is trusted (1) from which on no step is longer than the model's: a tenth of what has a step examined.
+        pivot_of_long_look: f64 = 1e-9, moves "choice of coordinates of loops";
         /// Eliminations of the start.
         eliminations: usize = 3, moves "choice of coordinates of large models";
         /// Most bodies of a whole model that is compiled to be checked; larger models are only assembled.
