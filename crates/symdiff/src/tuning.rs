@@ -32,6 +32,8 @@ tuning! {
         /// Statements of a function, at most, but for those of a region: compilers take more than proportionally long
         /// for more.
         statements_of_function: usize = 2000, moves "time in which exported code is compiled";
+        /// Nodes for which an empty graph has room: as many as most mechanisms of few bodies have.
+        nodes_at_first: usize = 1024, moves "time only";
         /// Regions of fewer nodes than this are not worth the question.
         least_region: usize = 4, moves "which instructions are skipped";
         /// Instructions are grouped by operation within stretches of this many: grouping saves dispatches, a limit

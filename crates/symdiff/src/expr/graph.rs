@@ -11,12 +11,13 @@ use rustc_hash::{FxBuildHasher, FxHashMap};
 
 use super::node::{Binary, Expr, Node, Unary};
 use super::visits::Visits;
+use crate::tuning::TUNING;
 
 /// An arena of expressions. Constant folding and the algebraic identities are applied as nodes are made.
 ///
 /// The identities are those of real algebra (`0 x = 0` also where x could be infinite); none changes the order of
 /// floating-point operations otherwise.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Graph {
     nodes: Vec<Node>,
     /// All nodes by content; the table stores handles only, so that it is small.
@@ -29,10 +30,24 @@ pub struct Graph {
     pub(super) visits: Visits,
 }
 
+impl Default for Graph {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
 impl Graph {
     /// An empty graph.
     pub fn new() -> Self {
-        Self::default()
+        Self {
+            nodes: Vec::with_capacity(TUNING.nodes_at_first),
+            known: HashTable::with_capacity(TUNING.nodes_at_first),
+            names: Vec::new(),
+            symbols: FxHashMap::default(),
+            most: None,
+            derivatives: FxHashMap::default(),
+            visits: Visits::default(),
+        }
     }
 
     /// Number of nodes.

@@ -30,7 +30,7 @@ impl Graph {
     /// `roots` as they are where `condition` is positive (`holds`), or where it is not.
     pub fn assume(&mut self, roots: &[Expr], condition: Expr, holds: bool) -> Vec<Expr> {
         let zero = self.constant(0.0);
-        self.rebuild(roots, |_, node, image| match node {
+        self.rebuild(roots, |_, _, node, image| match node {
             Node::Binary(function @ (Binary::Select | Binary::SelectElse), given, value) if given == condition => {
                 Some(if holds == (function == Binary::Select) { image[value.index()] } else { zero })
             }
@@ -101,16 +101,20 @@ impl Graph {
 
     /// `roots` with every key of `replacements` replaced by its value.
     pub fn substitute(&mut self, roots: &[Expr], replacements: &FxHashMap<Expr, Expr>) -> Vec<Expr> {
-        self.rebuild(roots, |expr, _, _| replacements.get(&expr).copied())
+        self.rebuild(roots, |_, expr, _, _| replacements.get(&expr).copied())
     }
 
     /// Rebuilds `roots` with nodes replaced, given the images of the nodes below them.
-    fn rebuild(&mut self, roots: &[Expr], replaced: impl Fn(Expr, Node, &[Expr]) -> Option<Expr>) -> Vec<Expr> {
+    pub(crate) fn rebuild(
+        &mut self,
+        roots: &[Expr],
+        replaced: impl Fn(&mut Self, Expr, Node, &[Expr]) -> Option<Expr>,
+    ) -> Vec<Expr> {
         // By node.
         let mut image = vec![Expr(0); past(roots)];
         for expr in self.reachable(roots) {
             let node = self.node(expr);
-            let new = match (replaced(expr, node, &image), node) {
+            let new = match (replaced(self, expr, node, &image), node) {
                 (Some(replacement), _) => replacement,
                 (None, Node::Constant(_) | Node::Symbol(_)) => expr,
                 (None, Node::Unary(function, a)) => self.unary(function, image[a.index()]),

@@ -194,6 +194,9 @@ impl Lowering<'_> {
         wanted: impl Iterator<Item = (Expr, Option<Guard>)>,
         targets: &[(Expr, u32)],
     ) -> Tape {
+        if body.is_empty() && targets.is_empty() {
+            return Tape::default();
+        }
         let regions = Regions::new(self.graph, body, wanted);
         let wanted = NodeSet::of(self.graph.len(), targets.iter().map(|&(expr, _)| expr));
         let pending = self.fuse(body, &wanted, &regions);

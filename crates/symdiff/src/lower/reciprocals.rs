@@ -14,29 +14,20 @@ use crate::expr::{Binary, Expr, Graph, Node};
 pub fn with_reciprocals(graph: &mut Graph, inputs: &[Input], roots: &[Expr]) -> Vec<Expr> {
     let mut stages = Stages::new(inputs);
     stages.update(graph);
-    let reached = graph.reachable(roots);
     let mut divided_by: FxHashMap<Expr, usize> = FxHashMap::default();
-    for &expr in &reached {
+    for expr in graph.reachable(roots) {
         if let Node::Binary(Binary::Div, _, divisor) = graph.node(expr) {
             *divided_by.entry(divisor).or_default() += 1;
         }
     }
     let one = graph.constant(1.0);
-    // By node.
-    let mut image = vec![one; reached.last().map_or(0, |last| last.index() + 1)];
-    for expr in reached {
-        let new = match graph.node(expr) {
-            Node::Constant(_) | Node::Symbol(_) => expr,
-            Node::Unary(function, a) => graph.unary(function, image[a.index()]),
-            Node::Binary(Binary::Div, a, b) if divided_by[&b] > 1 || stages.of(b) < stages.of(a) => {
-                let reciprocal = graph.div(one, image[b.index()]);
-                graph.mul(image[a.index()], reciprocal)
-            }
-            Node::Binary(function, a, b) => graph.binary(function, image[a.index()], image[b.index()]),
-        };
-        image[expr.index()] = new;
-    }
-    roots.iter().map(|root| image[root.index()]).collect()
+    graph.rebuild(roots, |graph, _, node, image| match node {
+        Node::Binary(Binary::Div, a, b) if divided_by[&b] > 1 || stages.of(b) < stages.of(a) => {
+            let reciprocal = graph.div(one, image[b.index()]);
+            Some(graph.mul(image[a.index()], reciprocal))
+        }
+        _ => None,
+    })
 }
 
 #[cfg(test)]

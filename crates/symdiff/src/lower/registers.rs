@@ -12,14 +12,17 @@ use crate::expr::Expr;
 /// stand that are there before or stay; scratch registers begin at `first`.
 pub(crate) fn allocate(steps: &[Step], targets: &[(Expr, u32)], register_of: &NodeTable, first: u32) -> Tape {
     let nodes = register_of.nodes();
-    let Uses { last_use, mut read_registers, computed } = Uses::of(steps, register_of);
-    read_registers.extend(targets.iter().filter_map(|&(expr, _)| register_of.get(expr)));
+    let Uses { last_use, mut reads_register, computed } = Uses::of(steps, register_of, first);
+    let read = targets.iter().filter_map(|&(expr, _)| register_of.get(expr));
+    read.for_each(|register| reads_register[register as usize] = true);
     let placed = NodeSet::of(nodes, targets.iter().map(|&(expr, _)| expr));
     let may_share = |expr: Expr| computed.contains(expr) && !placed.contains(expr) && !register_of.contains(expr);
     let shared = Shared::new(steps, &last_use, may_share);
-    let mut last_use_of = NodeTable::new(nodes);
-    for (index, step) in steps.iter().enumerate() {
-        step.read().for_each(|read| last_use_of.insert(shared.root(read), index as u32));
+    let mut last_use_of = last_use;
+    if !shared.next.is_empty() {
+        for (index, step) in steps.iter().enumerate() {
+            step.read().for_each(|read| last_use_of.insert(shared.root(read), index as u32));
+        }
     }
     let mut registers = Registers {
         register_of,
@@ -31,7 +34,7 @@ pub(crate) fn allocate(steps: &[Step], targets: &[(Expr, u32)], register_of: &No
     };
     let mut copies = Vec::new();
     for &(expr, register) in targets {
-        let is_free = !read_registers.contains(&register);
+        let is_free = !reads_register[register as usize];
         if computed.contains(expr) && is_free && !registers.place_of.contains(expr) {
             registers.place_of.insert(expr, register);
         } else if register_of.get(expr) != Some(register) {
@@ -134,24 +137,26 @@ impl Registers<'_> {
 struct Uses {
     /// The last step that reads a value.
     last_use: NodeTable,
-    /// Registers of values that are there before.
-    read_registers: FxHashSet<u32>,
+    /// By register below the scratch registers: whether a value is read that stands there before.
+    reads_register: Vec<bool>,
     /// Values that are written.
     computed: NodeSet,
 }
 
 impl Uses {
-    fn of(steps: &[Step], register_of: &NodeTable) -> Self {
+    fn of(steps: &[Step], register_of: &NodeTable, first: u32) -> Self {
         let nodes = register_of.nodes();
         let mut uses = Self {
             last_use: NodeTable::new(nodes),
-            read_registers: FxHashSet::default(),
+            reads_register: vec![false; first as usize],
             computed: NodeSet::new(nodes),
         };
         for (index, step) in steps.iter().enumerate() {
             for read in step.read() {
                 uses.last_use.insert(read, index as u32);
-                uses.read_registers.extend(register_of.get(read));
+                if let Some(register) = register_of.get(read) {
+                    uses.reads_register[register as usize] = true;
+                }
             }
             if let Step::Do(instruction) = step {
                 instruction.written().for_each(|expr| _ = uses.computed.insert(expr));

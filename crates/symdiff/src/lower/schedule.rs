@@ -122,6 +122,49 @@ impl Readers {
     }
 }
 
+/// Instructions of a window that are ready, operation by operation, first come, first served.
+struct Ready {
+    queues: Vec<Queue>,
+    /// By instruction, the one after it in its queue.
+    after: Vec<Option<usize>>,
+}
+
+/// Ready instructions of one operation.
+struct Queue {
+    op: Op,
+    /// The first and the last, where there are any.
+    ends: Option<(usize, usize)>,
+    count: usize,
+}
+
+impl Ready {
+    /// None, of a window of so many.
+    fn of(window: usize) -> Self {
+        Self { queues: Vec::new(), after: vec![None; window] }
+    }
+
+    fn enqueue(&mut self, op: Op, index: usize) {
+        match self.queues.iter_mut().find(|queue| queue.op == op) {
+            Some(Queue { ends, count, .. }) => {
+                let first = ends.map_or(index, |(first, last)| {
+                    self.after[last] = Some(index);
+                    first
+                });
+                (*ends, *count) = (Some((first, index)), *count + 1);
+            }
+            None => self.queues.push(Queue { op, ends: Some((index, index)), count: 1 }),
+        }
+    }
+
+    /// Takes out all of the operation that has most, of several the one that came first; the first of them.
+    fn take_most(&mut self) -> Option<usize> {
+        let counts = self.queues.iter_mut().enumerate();
+        let (_, most) = counts.max_by_key(|(place, queue)| (queue.count, usize::MAX - place))?;
+        most.count = 0;
+        most.ends.take().map(|(first, _)| first)
+    }
+}
+
 /// Brings equal operations together.
 struct Grouping {
     /// Where in the current window a value is written.
@@ -141,25 +184,18 @@ impl Grouping {
             let readers = Readers::of(window, &self.writer);
             readers.list.iter().for_each(|&index| missing[index] += 1);
             window.iter().flat_map(Pending::written).for_each(|expr| self.writer.remove(expr));
-            let mut ready: Vec<(Op, Vec<usize>)> = Vec::new();
-            let enqueue = |ready: &mut Vec<(Op, Vec<usize>)>, index: usize| {
-                let op = window[index].op;
-                match ready.iter_mut().find(|(known, _)| *known == op) {
-                    Some((_, places)) => places.push(index),
-                    None => ready.push((op, vec![index])),
-                }
-            };
-            (0..window.len()).filter(|&index| missing[index] == 0).for_each(|index| enqueue(&mut ready, index));
-            while let Some(most) = (0..ready.len()).max_by_key(|&queue| (ready[queue].1.len(), usize::MAX - queue)) {
-                if ready[most].1.is_empty() {
-                    break;
-                }
-                for index in std::mem::take(&mut ready[most].1) {
+            let mut ready = Ready::of(window.len());
+            let free = (0..window.len()).filter(|&index| missing[index] == 0);
+            free.for_each(|index| ready.enqueue(window[index].op, index));
+            while let Some(first) = ready.take_most() {
+                let mut left = Some(first);
+                while let Some(index) = left {
+                    left = ready.after[index];
                     grouped.push(window[index].clone());
                     for &reader in readers.of_writer(index) {
                         missing[reader] -= 1;
                         if missing[reader] == 0 {
-                            enqueue(&mut ready, reader);
+                            ready.enqueue(window[reader].op, reader);
                         }
                     }
                 }

@@ -4,7 +4,7 @@ use super::tuning::TUNING;
 use crate::assemble::Questions;
 use crate::model::Stepping;
 use crate::numerics::Sample;
-use crate::simulate::{Simulator, SingularWatch, Stepper};
+use crate::simulate::{Controller, Simulator, SingularWatch, Stepper};
 
 /// Whether the nominal motion passes a singular configuration, or does not get to its end: there joint coordinates
 /// amplify rounding more the shorter the steps are. Steps are as long as their errors allow, and never shorter than the
@@ -27,15 +27,18 @@ pub fn passes_singular(questions: &Questions, simulator: &Simulator) -> bool {
     if is_smooth {
         stepper.estimate_errors();
     }
+    let controller = Controller { tolerance: TUNING.tolerance_of_look, duration: simulation.duration };
     let mut watch = SingularWatch::new(simulator, &stepper);
     let (mut time, mut step) = (0.0, shortest);
     while time < simulation.duration * (1.0 - f64::EPSILON) {
         let h = step.min(simulation.duration - time);
+        let ratio =
+            |stepper: &Stepper| stepper.local_errors().first().map(|error| controller.error_ratio(error.size, h));
         if h > shortest {
             stepper.set_step_size(h);
             let before = stepper.save();
-            let is_within = stepper.try_step(h, time + h)[0] && stepper.local_errors()[0].size <= TUNING.error_of_look;
-            if !is_within {
+            let has_converged = stepper.try_step(h, time + h)[0];
+            if !has_converged || ratio(&stepper).is_none_or(|ratio| ratio > 1.0) {
                 stepper.rewind(&before, h);
                 step = (0.5 * h).max(shortest);
                 continue;
@@ -48,11 +51,9 @@ pub fn passes_singular(questions: &Questions, simulator: &Simulator) -> bool {
         if watch.has_passed() {
             return true;
         }
-        // The error is of third order.
-        let ratio = stepper.local_errors().first().map_or(f64::INFINITY, |error| error.size / TUNING.error_of_look);
         let is_near = stepper.pivot_loss(0) > TUNING.pivot_of_long_look;
-        let wanted = if is_near { shortest } else { h * (0.9 / ratio.cbrt()).clamp(0.5, 2.0) };
-        step = wanted.min(longest).max(shortest);
+        let wanted = ratio(&stepper).filter(|_| !is_near).map(|ratio| h * controller.factor(ratio));
+        step = wanted.unwrap_or(shortest).min(longest).max(shortest);
     }
     false
 }

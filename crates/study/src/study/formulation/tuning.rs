@@ -37,9 +37,8 @@ tuning! {
         looks: f64 = 10_000.0, moves "choice of coordinates of loops";
         /// Least steps of it.
         least_looks: f64 = 100.0, moves "choice of coordinates of loops";
-        /// Most local error of a step that is longer than the model's, relative to the coordinate: a hundred steps a
-        /// turn.
-        error_of_look: f64 = 1e-5, moves "choice of coordinates of loops";
+        /// Tolerance of its steps that are longer than the model's: some fifty a turn.
+        tolerance_of_look: f64 = 3e-2, moves "choice of coordinates of loops";
         /// Part that a pivot has lost of the range between its size at the pivot samples (1e-10) and the smallest that
         /// is trusted (1) from which on no step is longer than the model's: a tenth of what has a step examined.
         pivot_of_long_look: f64 = 1e-9, moves "choice of coordinates of loops";
