@@ -31,7 +31,7 @@ struct Dependence {
 /// The functions of the time in the equations of motion; `None` where there are none.
 pub(super) fn functions(simulator: &Simulator) -> Option<Functions> {
     let system = &simulator.system;
-    let roots = forces(system);
+    let roots = system.of_motion();
     if !depends_on_time(system) {
         return None;
     }
@@ -59,13 +59,7 @@ pub(super) fn functions(simulator: &Simulator) -> Option<Functions> {
 /// Whether the time itself is in the equations of motion or in constraints.
 pub fn depends_on_time(system: &System) -> bool {
     let is_in = |roots: &[Expr]| system.graph.symbols_of(roots).contains(&system.time);
-    is_in(&forces(system)) || is_in(&system.constraint)
-}
-
-/// What is in the equations of motion: masses and forces.
-fn forces(system: &System) -> Vec<Expr> {
-    let mass = system.mass.iter().map(|&(_, _, value)| value);
-    mass.chain(system.inertia.iter().chain(&system.force).copied()).collect()
+    is_in(&system.of_motion()) || is_in(&system.constraint)
 }
 
 /// The largest subexpressions of time and parameters alone; and the smallest nonlinear functions of both time and

@@ -49,9 +49,7 @@ fn in_shortest_cut(questions: &Questions, asked: Simulator) -> Result<Simulator,
         return Ok(asked);
     }
     let why = asked.system.formulation.why.clone();
-    let shorter = loop_cuts::shortest(questions, &asked, false, |other, best| {
-        Compiled::within(assemble::build(other).ok()?, other.description, enough(best)).ok()
-    });
+    let shorter = loop_cuts::shortest(questions, &asked, false, |other| assemble::build(other).ok());
     Ok(chosen(shorter.unwrap_or(asked), why))
 }
 
@@ -134,10 +132,8 @@ fn shortest(questions: &Questions, absolute: Simulator, joint: Simulator, start:
     let singular = "the nominal motion passes singular configurations";
     let is_first_shorter = is_shorter(&joint, &absolute);
     let cut_better = || {
-        loop_cuts::shortest(questions, &joint, true, |other, best| {
-            let system = assemble::in_joint_coordinates(other, None, start).ok()?.ok()?;
-            Compiled::within(system, other.description, enough(best)).ok()
-        })
+        let assemble = |other: &Questions| assemble::in_joint_coordinates(other, None, start).ok()?.ok();
+        loop_cuts::shortest(questions, &joint, true, assemble)
     };
     let better = if is_first_shorter && rayon::current_num_threads() > 1 {
         // Singular motions are rare: cuts are seldom compiled for nothing.
