@@ -36,15 +36,16 @@ struct Grid<'t> {
     values: Vec<Vec<Vec<f64>>>,
 }
 
-/// Of every channel its range at every time; at each level with about twice as many points along each parameter.
-pub fn ranges(term: &Term, times: &[f64], level: u32) -> Vec<Vec<Range>> {
+/// Of every channel that is needed its range at every time; at each level with about twice as many points along each
+/// parameter.
+pub fn ranges(term: &Term, times: &[f64], level: u32, needed: &dyn Fn(usize) -> bool) -> Vec<Vec<Range>> {
     let grid = Grid::new(term, times, level);
-    let channels = term.channels.len();
     let range = |channel, row| {
         let end = |sign: f64| sign * grid.greatest(channel, row, times[row], sign);
         Range { lower: end(-1.0), upper: end(1.0) }
     };
-    (0..channels).map(|channel| (0..times.len()).map(|row| range(channel, row)).collect()).collect()
+    let of_channel = |channel| (0..times.len()).map(|row| range(channel, row)).collect();
+    (0..term.channels.len()).map(|channel| if needed(channel) { of_channel(channel) } else { Vec::new() }).collect()
 }
 
 /// Whether the curves change with a parameter, in the middle of the others' intervals or at their ends: a grid has the
