@@ -24,6 +24,9 @@ const SMOOTH: f64 = 1e-5;
 const STAGES: usize = 60;
 const FINEST: f64 = 1e-8;
 
+/// Places along a parameter where it is looked at whether it matters, but the first.
+const LOOKS: usize = 16;
+
 /// Samples of a term on a grid over its uncertain parameters.
 struct Grid<'t> {
     term: &'t Term,
@@ -49,16 +52,19 @@ pub fn ranges(term: &Term, times: &[f64], level: u32, needed: &dyn Fn(usize) -> 
 }
 
 /// Whether the curves change with a parameter, in the middle of the others' intervals or at their ends: a grid has the
-/// more points the fewer parameters it has.
+/// more points the fewer parameters it has. Motions at both its ends may pass what those between them meet.
 fn matters(term: &Term, parameters: &[Parameter], which: usize, times: &[f64]) -> bool {
-    let curves = |others: usize, own: usize| {
+    let curves = |others: f64, own: f64| {
         let value = |(i, parameter): (usize, &Parameter)| {
-            let [lower, upper] = parameter.interval();
-            [lower, upper, parameter.value][if i == which { own } else { others }]
+            parameter.value + parameter.half * if i == which { own } else { others }
         };
         (term.curves)(&parameters.iter().enumerate().map(value).collect::<Vec<f64>>(), times)
     };
-    parameters[which].half > 0.0 && (0..3).any(|others| curves(others, 0) != curves(others, 1))
+    let changes = |others: f64| {
+        let first = curves(others, -1.0);
+        (1..=LOOKS).any(|look| curves(others, 2.0 * look as f64 / LOOKS as f64 - 1.0) != first)
+    };
+    parameters[which].half > 0.0 && [0.0, -1.0, 1.0].into_iter().any(changes)
 }
 
 /// From a point of a grid with so many points along each axis uphill, at most one cell away, by Rosenbrock's method
