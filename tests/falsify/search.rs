@@ -9,16 +9,16 @@ use crate::truth::Range;
 /// Candidates of each end that are refined.
 const CANDIDATES: usize = 6;
 
-/// Of those of closed forms, how many more points are drawn about where a band seems to be missed, and how many points
-/// at once.
+/// About how many of those more points are drawn where a band seems to be missed.
 const DRAWN_ABOUT: usize = 2;
-const DRAWN: usize = 1500;
+
+/// How many points are drawn at once, and up to which distance, in cells: of closed forms, and of motions, which have
+/// two parameters at most.
+const DRAWN: (usize, f64) = (1500, FINEST);
+const DRAWN_MOTIONS: (usize, f64) = (24, 1e-3);
 
 /// Share of their coordinates that are at an end of the parameter's interval.
 const AT_ENDS: f64 = 0.25;
-
-/// Share of the width by which a polynomial through integrated motions may miss one where these are smooth.
-const SMOOTH: f64 = 1e-5;
 
 /// Most stages of a local search, and its smallest step, in cells.
 const STAGES: usize = 60;
@@ -112,12 +112,17 @@ fn climb(start: &[f64], points: usize, known: f64, f: &dyn Fn(&[f64]) -> f64) ->
 /// The greatest value that is found about a place, a quarter of the box each way and then ever nearer to the best so
 /// far, at points that are drawn at random: on a ridge with a kink, where a contact begins or ends, no direction leads
 /// a climb on, and its end is many cells away. Mostly it is where some parameter is at an end of its interval.
-fn narrowed(known: f64, place: &[f64], points: usize, f: &dyn Fn(&[f64]) -> f64) -> f64 {
-    let (mut random, mut best, mut at) = (Random::new(1, 0), known, place.to_vec());
+fn narrowed(
+    (known, place): &(f64, Vec<f64>),
+    points: usize,
+    (drawn, nearest): (usize, f64),
+    f: &dyn Fn(&[f64]) -> f64,
+) -> f64 {
+    let (mut random, mut best, mut at) = (Random::new(1, 0), *known, place.clone());
     let mut reach = 0.25 * points as f64;
-    while reach > FINEST {
+    while reach > nearest {
         let centre = at.clone();
-        for _ in 0..DRAWN {
+        for _ in 0..drawn {
             let near = |middle: &f64| {
                 let (end, moved) = (random.chance(0.5), middle + reach * (2.0 * random.unit() - 1.0));
                 let last = (points - 1) as f64;
@@ -231,27 +236,24 @@ impl<'t> Grid<'t> {
             let mut found = climbed(&|place, _| exact(place));
             if self.level > 0 {
                 found.truncate(DRAWN_ABOUT);
-                found.iter_mut().for_each(|own| own.0 = narrowed(own.0, &own.1, self.points, &exact));
+                found.iter_mut().for_each(|own| own.0 = narrowed(own, self.points, DRAWN, &exact));
             }
             return found.into_iter().map(|(value, _)| value).fold(f64::NEG_INFINITY, f64::max);
         }
         // A polynomial overshoots beside kinks: its promise counts as far as the motion there attains it.
         let moved = |place: &[f64]| sign * (self.term.curves)(&self.at(place), &[0.0, time])[channel][1];
         let mut best = candidates.first().map_or(f64::NEG_INFINITY, |&sample| value(sample));
-        let least = (0..self.values.len()).map(value).fold(best, f64::min);
-        let mut has_kinks = false;
         for (promised, place) in climbed(&|place, sample| sign * self.interpolated(sample, place, channel, row)) {
             if promised <= best {
                 break;
             }
-            let attained = moved(&place);
-            has_kinks |= (promised - attained).abs() > SMOOTH * (best - least);
-            best = best.max(attained);
+            best = best.max(moved(&place));
         }
-        if has_kinks && self.level > 0 {
+        if self.level > 0 {
             // Nor does it follow them: where a band seems to be missed, motions are integrated on the way.
             for &sample in candidates.iter().take(DRAWN_ABOUT) {
-                best = best.max(climb(&self.place(sample), self.points, value(sample), &moved).0);
+                let found = climb(&self.place(sample), self.points, value(sample), &moved);
+                best = best.max(narrowed(&found, self.points, DRAWN_MOTIONS, &moved));
             }
         }
         best
@@ -311,7 +313,7 @@ impl<'t> Grid<'t> {
 
 #[cfg(test)]
 mod tests {
-    use super::climb;
+    use super::{DRAWN_MOTIONS, climb, narrowed};
 
     /// A bent ridge as of r cos(ω t + α(r) t²): the best point, where it leaves the cell, is off the axes.
     #[test]
@@ -321,5 +323,14 @@ mod tests {
         let (found, _) = climb(&[1.0; 3], 3, f(&[1.0; 3]), &f);
         // At p₀ = 2 the ridge is at p₁ = 1.9.
         assert!((found - 0.02).abs() < 1e-9, "{found}");
+    }
+
+    /// An event that passes through the box: the greatest value is on its ridge, at an end of an interval.
+    #[test]
+    fn a_ridge_with_a_kink_is_followed_to_an_end() {
+        let f = |p: &[f64]| 0.1 * p[1] - (p[0] - 3.7 - 0.3 * p[1]).abs();
+        let found = climb(&[4.0, 1.0], 21, f(&[4.0, 1.0]), &f);
+        let best = narrowed(&found, 21, DRAWN_MOTIONS, &f);
+        assert!((best - 2.0).abs() < 1e-3, "{best} from {found:?}");
     }
 }

@@ -157,7 +157,7 @@ pub fn post(random: &mut Random, scale: &Scale) -> Term {
     let speed = right.hypot(up);
     let size = speed * scale.duration;
     let curves = located(
-        (0.25 * radius / speed).min(0.3 * contact),
+        (radius / speed).min(0.3 * contact),
         [size, size, speed, speed],
         |p| [0.0, 0.0, p[0], p[1]],
         |p, y, sides| {
