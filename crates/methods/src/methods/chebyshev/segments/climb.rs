@@ -152,7 +152,9 @@ fn begun(row: &SegmentRow, lattice: &Lattice) -> (Seeds, Vec<Climb>) {
         let [begin, end] = [point.times[segment], point.times[segment + 1]];
         (-TUNING.beyond_of_seed..=1.0 + TUNING.beyond_of_seed).contains(&((time - begin) / (end - begin)))
     };
-    seeds.retain(|(segment, point)| point.is_inside() && is_in_segment(*segment, point));
+    // A sample that a surface leaves outside of its word's part is of it nevertheless.
+    let is_inside = |point: &Point| point.is_inside() || row.piece.samples.contains(&point.xi);
+    seeds.retain(|(segment, point)| is_in_segment(*segment, point) && is_inside(point));
     if seeds.is_empty() {
         return (Seeds::default(), Vec::new());
     }
