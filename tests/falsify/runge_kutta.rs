@@ -117,23 +117,26 @@ impl<F: Fn(f64, &[f64], &mut [f64])> Equation for F {}
 
 /// The solution at ascending times, from the first of them on; none of them is stepped over. Each step's error is below
 /// `tolerance`, relative to y or 1, whichever is larger. Steps are no longer than `longest`.
-pub fn solve(f: impl Equation, start: &[f64], times: &[f64], tolerance: f64, longest: f64) -> Vec<Vec<f64>> {
-    let n = start.len();
-    let mut y = start.to_vec();
-    let mut stages = vec![vec![0.0; n]; 12];
-    let mut solution = vec![y.clone()];
+pub fn solve<const N: usize>(
+    f: impl Equation,
+    start: &[f64; N],
+    times: &[f64],
+    tolerance: f64,
+    longest: f64,
+) -> Vec<[f64; N]> {
+    let mut y = *start;
+    let mut stages = [[0.0; N]; 12];
+    let mut solution = vec![y];
     let mut h = 1e-3 * (times.last().copied().unwrap_or(0.0) - times[0]).min(longest);
     for ends in times.windows(2) {
         let mut t = ends[0];
         while t < ends[1] {
             let is_last = t + h >= ends[1];
             let step = if is_last { ends[1] - t } else { h };
-            attempt(&f, t, &y, step, &mut stages);
+            let next = attempt(&f, t, &y, step, &mut stages);
             let error = step * error(&stages, &y, tolerance);
             if error <= 1.0 {
-                for (i, y) in y.iter_mut().enumerate() {
-                    *y += step * weighted(&stages, &RESULT, i);
-                }
+                y = next;
                 t = if is_last { ends[1] } else { t + step };
             }
             // A step that was cut short by a row says nothing against longer ones.
@@ -142,21 +145,28 @@ pub fn solve(f: impl Equation, start: &[f64], times: &[f64], tolerance: f64, lon
             }
             assert!(step > 1e-14 * ends[1].abs() || is_last, "the reference solution does not proceed at {t} s");
         }
-        solution.push(y.clone());
+        solution.push(y);
     }
     solution
 }
 
-/// The stages of a step from y at t.
-fn attempt(f: &impl Equation, t: f64, y: &[f64], step: f64, stages: &mut [Vec<f64>]) {
-    let mut inner = vec![0.0; y.len()];
+/// The stages of a step from y at t, and where it leads.
+fn attempt<const N: usize>(
+    f: &impl Equation,
+    t: f64,
+    y: &[f64; N],
+    step: f64,
+    stages: &mut [[f64; N]; 12],
+) -> [f64; N] {
     for stage in 0..12 {
-        inner.copy_from_slice(y);
+        let mut inner = *y;
         for (k, weight) in stages.iter().zip(WEIGHTS[stage]).filter(|(_, weight)| **weight != 0.0) {
             inner.iter_mut().zip(k).for_each(|(inner, k)| *inner += step * weight * k);
         }
         f(t + TIMES[stage] * step, &inner, &mut stages[stage]);
     }
+    let rates = weighted(stages, &RESULT);
+    std::array::from_fn(|i| y[i] + step * rates[i])
 }
 
 /// y' = f(t, y, sides): `sides` tells of each switch whether it is positive.
@@ -164,19 +174,18 @@ pub trait Sided: Fn(f64, &[f64], &[bool], &mut [f64]) {}
 impl<F: Fn(f64, &[f64], &[bool], &mut [f64])> Sided for F {}
 
 /// As [`solve`], where f changes at zeros of switches, functions of t and y: within a step f keeps the sides of its
-/// beginning, and a step in which a switch changes its sign, also there and back, ends at its zero by bisection to
-/// rounding.
-pub fn solve_located<const N: usize>(
+/// beginning, and a step in which a switch changes its sign, also there and back, ends at its zero, to rounding.
+pub fn solve_located<const N: usize, const S: usize>(
     f: impl Sided,
-    switches: impl Fn(f64, &[f64]) -> [f64; N],
-    start: &[f64],
+    switches: impl Fn(f64, &[f64]) -> [f64; S],
+    start: &[f64; N],
     times: &[f64],
     tolerance: f64,
     longest: f64,
-) -> Vec<Vec<f64>> {
-    let mut y = start.to_vec();
-    let mut stages = vec![vec![0.0; y.len()]; 12];
-    let mut solution = vec![y.clone()];
+) -> Vec<[f64; N]> {
+    let mut y = *start;
+    let mut stages = [[0.0; N]; 12];
+    let mut solution = vec![y];
     let mut sides = switches(times[0], &y).map(|value| value > 0.0);
     let mut h = longest;
     for ends in times.windows(2) {
@@ -185,35 +194,31 @@ pub fn solve_located<const N: usize>(
             let is_last = t + h >= ends[1];
             let step = if is_last { ends[1] - t } else { h };
             let held = |t: f64, y: &[f64], d: &mut [f64]| f(t, y, &sides, d);
-            let mut after = |step: f64| {
-                attempt(&held, t, &y, step, &mut stages);
-                let next: Vec<f64> = (0..y.len()).map(|i| y[i] + step * weighted(&stages, &RESULT, i)).collect();
-                (next, step * error(&stages, &y, tolerance))
-            };
-            let (mut next, error) = after(step);
+            let mut next = attempt(&held, t, &y, step, &mut stages);
+            let error = step * error(&stages, &y, tolerance);
             if error > 1.0 {
                 h = step * (0.9 * error.powf(-0.125)).clamp(0.2, 0.9);
                 assert!(h > 1e-14 * ends[1].abs(), "the reference solution does not proceed at {t} s");
                 continue;
             }
+            let mut after = |step: f64| attempt(&held, t, &y, step, &mut stages);
             let sides_at = |step: f64, y: &[f64]| switches(t + step, y).map(|value| value > 0.0);
             let mut taken = step;
-            if sides_at(step, &next) == sides
-                && let Some(touch) = touched(|share| switches(t + share * step, &after(share * step).0))
-            {
-                (taken, next) = (touch * step, after(touch * step).0);
+            if sides_at(step, &next) == sides {
+                let rate = |t: f64, y: &[f64; N]| rates(&held, &switches, t, y, 1e-6 * step);
+                let values = [switches(t, &y), switches(t + step, &next)];
+                let rates = [rate(t, &y), rate(t + step, &next)];
+                let at = |share: f64, i: usize| switches(t + share * step, &after(share * step))[i];
+                if let Some(touch) = touched(values, rates, at) {
+                    (taken, next) = (touch * step, after(touch * step));
+                }
             }
             if sides_at(taken, &next) != sides {
-                let mut before = 0.0;
-                while taken - before > 4.0 * f64::EPSILON * ends[1].abs() {
-                    let middle = 0.5 * (before + taken);
-                    let (at_middle, _) = after(middle);
-                    if sides_at(middle, &at_middle) == sides {
-                        before = middle;
-                    } else {
-                        (taken, next) = (middle, at_middle);
-                    }
-                }
+                let at = |step: f64| {
+                    let next = after(step);
+                    (switches(t + step, &next), next)
+                };
+                (taken, next) = crossed(&sides, taken, 4.0 * f64::EPSILON * ends[1].abs(), at);
             }
             let now = sides_at(taken, &next);
             let is_cut = taken < step;
@@ -223,25 +228,43 @@ pub fn solve_located<const N: usize>(
                 h = (step * (0.9 * error.powf(-0.125)).clamp(0.2, 5.0)).min(longest);
             }
         }
-        solution.push(y.clone());
+        solution.push(y);
     }
     solution
 }
 
-/// Share of a step at which a switch, by its values at shares, has another sign than at both ends: about the vertices
-/// of parabolas, which are drawn ever closer.
-fn touched<const N: usize>(mut at: impl FnMut(f64) -> [f64; N]) -> Option<f64> {
-    let [first, last] = [at(0.0), at(1.0)];
-    (0..N).find_map(|i| {
+/// How fast switches change at y, by what they differ within so short a time.
+fn rates<const N: usize, const S: usize>(
+    f: &impl Equation,
+    switches: &impl Fn(f64, &[f64]) -> [f64; S],
+    t: f64,
+    y: &[f64; N],
+    short: f64,
+) -> [f64; S] {
+    let mut slope = [0.0; N];
+    f(t, y, &mut slope);
+    let moved = |time: f64| switches(t + time, &std::array::from_fn::<f64, N, _>(|i| y[i] + time * slope[i]));
+    let [before, after] = [moved(-short), moved(short)];
+    std::array::from_fn(|i| after[i] - before[i])
+}
+
+/// Share of a step at which a switch has another sign than at both ends: about the vertices of parabolas, which are
+/// drawn ever closer, for those that come nearer at the beginning and go away at the end.
+fn touched<const S: usize>(
+    [first, last]: [[f64; S]; 2],
+    [begins, ends]: [[f64; S]; 2],
+    mut at: impl FnMut(f64, usize) -> f64,
+) -> Option<f64> {
+    (0..S).filter(|&i| first[i] * begins[i] <= 0.0 && last[i] * ends[i] >= 0.0).find_map(|i| {
         let nearest = first[i].abs().min(last[i].abs());
         let (mut middle, mut reach) = (0.5, 0.5);
         for _ in 0..6 {
-            let [a, b, c] = [middle - reach, middle, middle + reach].map(|share| at(share)[i]);
+            let [a, b, c] = [middle - reach, middle, middle + reach].map(|share| at(share, i));
             let vertex = middle + 0.5 * reach * (a - c) / (a - 2.0 * b + c);
             if !(vertex > 0.0 && vertex < 1.0) {
                 return None;
             }
-            let value = at(vertex)[i];
+            let value = at(vertex, i);
             if (value > 0.0) != (first[i] > 0.0) {
                 return Some(vertex);
             }
@@ -255,21 +278,57 @@ fn touched<const N: usize>(mut at: impl FnMut(f64) -> [f64; N]) -> Option<f64> {
     })
 }
 
-fn weighted(stages: &[Vec<f64>], weights: &[f64; 12], i: usize) -> f64 {
-    stages.iter().zip(weights).map(|(k, weight)| weight * k[i]).sum()
+/// Just behind the first change of sides before `taken`, to within `fine`: the step, and where it leads. By chords,
+/// which aim a little towards the middle so that both ends close in, and by halves where these are slow.
+fn crossed<const N: usize, const S: usize>(
+    sides: &[bool; S],
+    taken: f64,
+    fine: f64,
+    mut at: impl FnMut(f64) -> ([f64; S], [f64; N]),
+) -> (f64, [f64; N]) {
+    let (whole, mut before, mut behind) = (taken, 0.0, taken);
+    let (mut held, _) = at(before);
+    let (mut changed, mut next) = at(behind);
+    let mut is_slow = false;
+    while behind - before > fine {
+        let width = behind - before;
+        let zero = |i: usize| held[i].abs() / (held[i].abs() + changed[i].abs());
+        let others = (0..S).filter(|&i| (changed[i] > 0.0) != sides[i]);
+        let first = before + width * others.map(zero).fold(1.0, f64::min);
+        let middle = before + 0.5 * width;
+        let inwards = (0.02 * width * width / whole).max(0.5 * fine);
+        let chord = if first < middle { (first + inwards).min(middle) } else { (first - inwards).max(middle) };
+        let step = if is_slow { middle } else { chord };
+        let (values, state) = at(step);
+        if values.map(|value| value > 0.0) == *sides {
+            (before, held) = (step, values);
+        } else {
+            (behind, changed, next) = (step, values, state);
+        }
+        is_slow = !is_slow && behind - before > 0.5 * width;
+    }
+    (behind, next)
+}
+
+fn weighted<const N: usize>(stages: &[[f64; N]; 12], weights: &[f64; 12]) -> [f64; N] {
+    let mut sums = [0.0; N];
+    for (k, weight) in stages.iter().zip(weights).filter(|(_, weight)| **weight != 0.0) {
+        sums.iter_mut().zip(k).for_each(|(sum, k)| *sum += weight * k);
+    }
+    sums
 }
 
 /// By the formula of the program: e₅² / √(e₅² + 0.01 e₃²), over the step and relative to the tolerance.
-fn error(stages: &[Vec<f64>], y: &[f64], tolerance: f64) -> f64 {
+fn error<const N: usize>(stages: &[[f64; N]; 12], y: &[f64; N], tolerance: f64) -> f64 {
+    let [result, of_third, of_fifth] = [&RESULT, &THIRD, &FIFTH].map(|weights| weighted(stages, weights));
     let (mut fifth, mut third) = (0.0, 0.0);
-    for (i, y) in y.iter().enumerate() {
-        let scale = tolerance * y.abs().max(1.0);
-        let of_third = weighted(stages, &RESULT, i) - weighted(stages, &THIRD, i);
-        fifth += (weighted(stages, &FIFTH, i) / scale).powi(2);
-        third += (of_third / scale).powi(2);
+    for i in 0..N {
+        let scale = tolerance * y[i].abs().max(1.0);
+        fifth += (of_fifth[i] / scale).powi(2);
+        third += ((result[i] - of_third[i]) / scale).powi(2);
     }
     let both = fifth + 0.01 * third;
-    if both > 0.0 { fifth / (both * y.len() as f64).sqrt() } else { 0.0 }
+    if both > 0.0 { fifth / (both * N as f64).sqrt() } else { 0.0 }
 }
 
 #[cfg(test)]

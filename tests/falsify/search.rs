@@ -9,20 +9,23 @@ use crate::truth::Range;
 /// Candidates of each end that are refined.
 const CANDIDATES: usize = 6;
 
-/// Of those of closed forms, how many more points are drawn about where a band seems to be missed, and how many points
-/// at once.
+/// About how many of those more points are drawn where a band seems to be missed.
 const DRAWN_ABOUT: usize = 2;
-const DRAWN: usize = 1500;
+
+/// How many points are drawn at once, and up to which distance, in cells: of closed forms, and of motions, which have
+/// two parameters at most.
+const DRAWN: (usize, f64) = (1500, FINEST);
+const DRAWN_MOTIONS: (usize, f64) = (24, 1e-3);
 
 /// Share of their coordinates that are at an end of the parameter's interval.
 const AT_ENDS: f64 = 0.25;
 
-/// Share of the width by which a polynomial through integrated motions may miss one where these are smooth.
-const SMOOTH: f64 = 1e-5;
-
 /// Most stages of a local search, and its smallest step, in cells.
 const STAGES: usize = 60;
 const FINEST: f64 = 1e-8;
+
+/// Places along a parameter where it is looked at whether it matters, but the first.
+const LOOKS: usize = 16;
 
 /// Samples of a term on a grid over its uncertain parameters.
 struct Grid<'t> {
@@ -36,28 +39,32 @@ struct Grid<'t> {
     values: Vec<Vec<Vec<f64>>>,
 }
 
-/// Of every channel its range at every time; at each level with about twice as many points along each parameter.
-pub fn ranges(term: &Term, times: &[f64], level: u32) -> Vec<Vec<Range>> {
+/// Of every channel that is needed its range at every time; at each level with about twice as many points along each
+/// parameter.
+pub fn ranges(term: &Term, times: &[f64], level: u32, needed: &dyn Fn(usize) -> bool) -> Vec<Vec<Range>> {
     let grid = Grid::new(term, times, level);
-    let channels = term.channels.len();
     let range = |channel, row| {
         let end = |sign: f64| sign * grid.greatest(channel, row, times[row], sign);
         Range { lower: end(-1.0), upper: end(1.0) }
     };
-    (0..channels).map(|channel| (0..times.len()).map(|row| range(channel, row)).collect()).collect()
+    let of_channel = |channel| (0..times.len()).map(|row| range(channel, row)).collect();
+    (0..term.channels.len()).map(|channel| if needed(channel) { of_channel(channel) } else { Vec::new() }).collect()
 }
 
 /// Whether the curves change with a parameter, in the middle of the others' intervals or at their ends: a grid has the
-/// more points the fewer parameters it has.
+/// more points the fewer parameters it has. Motions at both its ends may pass what those between them meet.
 fn matters(term: &Term, parameters: &[Parameter], which: usize, times: &[f64]) -> bool {
-    let curves = |others: usize, own: usize| {
+    let curves = |others: f64, own: f64| {
         let value = |(i, parameter): (usize, &Parameter)| {
-            let [lower, upper] = parameter.interval();
-            [lower, upper, parameter.value][if i == which { own } else { others }]
+            parameter.value + parameter.half * if i == which { own } else { others }
         };
         (term.curves)(&parameters.iter().enumerate().map(value).collect::<Vec<f64>>(), times)
     };
-    parameters[which].half > 0.0 && (0..3).any(|others| curves(others, 0) != curves(others, 1))
+    let changes = |others: f64| {
+        let first = curves(others, -1.0);
+        (1..=LOOKS).any(|look| curves(others, 2.0 * look as f64 / LOOKS as f64 - 1.0) != first)
+    };
+    parameters[which].half > 0.0 && [0.0, -1.0, 1.0].into_iter().any(changes)
 }
 
 /// From a point of a grid with so many points along each axis uphill, at most one cell away, by Rosenbrock's method
@@ -105,12 +112,17 @@ fn climb(start: &[f64], points: usize, known: f64, f: &dyn Fn(&[f64]) -> f64) ->
 /// The greatest value that is found about a place, a quarter of the box each way and then ever nearer to the best so
 /// far, at points that are drawn at random: on a ridge with a kink, where a contact begins or ends, no direction leads
 /// a climb on, and its end is many cells away. Mostly it is where some parameter is at an end of its interval.
-fn narrowed(known: f64, place: &[f64], points: usize, f: &dyn Fn(&[f64]) -> f64) -> f64 {
-    let (mut random, mut best, mut at) = (Random::new(1, 0), known, place.to_vec());
+fn narrowed(
+    (known, place): &(f64, Vec<f64>),
+    points: usize,
+    (drawn, nearest): (usize, f64),
+    f: &dyn Fn(&[f64]) -> f64,
+) -> f64 {
+    let (mut random, mut best, mut at) = (Random::new(1, 0), *known, place.clone());
     let mut reach = 0.25 * points as f64;
-    while reach > FINEST {
+    while reach > nearest {
         let centre = at.clone();
-        for _ in 0..DRAWN {
+        for _ in 0..drawn {
             let near = |middle: &f64| {
                 let (end, moved) = (random.chance(0.5), middle + reach * (2.0 * random.unit() - 1.0));
                 let last = (points - 1) as f64;
@@ -224,27 +236,24 @@ impl<'t> Grid<'t> {
             let mut found = climbed(&|place, _| exact(place));
             if self.level > 0 {
                 found.truncate(DRAWN_ABOUT);
-                found.iter_mut().for_each(|own| own.0 = narrowed(own.0, &own.1, self.points, &exact));
+                found.iter_mut().for_each(|own| own.0 = narrowed(own, self.points, DRAWN, &exact));
             }
             return found.into_iter().map(|(value, _)| value).fold(f64::NEG_INFINITY, f64::max);
         }
         // A polynomial overshoots beside kinks: its promise counts as far as the motion there attains it.
         let moved = |place: &[f64]| sign * (self.term.curves)(&self.at(place), &[0.0, time])[channel][1];
         let mut best = candidates.first().map_or(f64::NEG_INFINITY, |&sample| value(sample));
-        let least = (0..self.values.len()).map(value).fold(best, f64::min);
-        let mut has_kinks = false;
         for (promised, place) in climbed(&|place, sample| sign * self.interpolated(sample, place, channel, row)) {
             if promised <= best {
                 break;
             }
-            let attained = moved(&place);
-            has_kinks |= (promised - attained).abs() > SMOOTH * (best - least);
-            best = best.max(attained);
+            best = best.max(moved(&place));
         }
-        if has_kinks && self.level > 0 {
+        if self.level > 0 {
             // Nor does it follow them: where a band seems to be missed, motions are integrated on the way.
             for &sample in candidates.iter().take(DRAWN_ABOUT) {
-                best = best.max(climb(&self.place(sample), self.points, value(sample), &moved).0);
+                let found = climb(&self.place(sample), self.points, value(sample), &moved);
+                best = best.max(narrowed(&found, self.points, DRAWN_MOTIONS, &moved));
             }
         }
         best
@@ -304,7 +313,7 @@ impl<'t> Grid<'t> {
 
 #[cfg(test)]
 mod tests {
-    use super::climb;
+    use super::{DRAWN_MOTIONS, climb, narrowed};
 
     /// A bent ridge as of r cos(ω t + α(r) t²): the best point, where it leaves the cell, is off the axes.
     #[test]
@@ -314,5 +323,14 @@ mod tests {
         let (found, _) = climb(&[1.0; 3], 3, f(&[1.0; 3]), &f);
         // At p₀ = 2 the ridge is at p₁ = 1.9.
         assert!((found - 0.02).abs() < 1e-9, "{found}");
+    }
+
+    /// An event that passes through the box: the greatest value is on its ridge, at an end of an interval.
+    #[test]
+    fn a_ridge_with_a_kink_is_followed_to_an_end() {
+        let f = |p: &[f64]| 0.1 * p[1] - (p[0] - 3.7 - 0.3 * p[1]).abs();
+        let start = vec![10.0, 19.0];
+        let best = narrowed(&(f(&start), start), 21, DRAWN_MOTIONS, &f);
+        assert!((best - 2.0).abs() < 1e-3, "{best}");
     }
 }

@@ -1,7 +1,7 @@
 //! The true range of an output: of every term over its own parameters, and of what a formula makes of independent
 //! ranges.
 
-use crate::draw::{Combine, Draw, Output, Wrap};
+use crate::draw::{Combine, Draw, Output, Term, Wrap};
 use crate::search;
 
 /// Least and greatest value.
@@ -20,13 +20,15 @@ impl Range {
 
 /// Of every output the range at every time. A higher level searches more densely.
 pub fn ranges(draw: &Draw, times: &[f64], level: u32) -> Vec<Vec<Range>> {
-    let needed = |term: usize| draw.outputs.iter().any(|output| output.inputs.iter().any(|input| input.0 == term));
-    let of_terms: Vec<Vec<Vec<Range>>> = draw
-        .terms
-        .iter()
-        .enumerate()
-        .map(|(index, term)| if needed(index) { search::ranges(term, times, level) } else { Vec::new() })
-        .collect();
+    let needed = |term: usize, channel: usize| draw.outputs.iter().any(|own| own.inputs.contains(&(term, channel)));
+    let of_term = |(index, term): (usize, &Term)| {
+        if (0..term.channels.len()).any(|channel| needed(index, channel)) {
+            search::ranges(term, times, level, &|channel| needed(index, channel))
+        } else {
+            Vec::new()
+        }
+    };
+    let of_terms: Vec<Vec<Vec<Range>>> = draw.terms.iter().enumerate().map(of_term).collect();
     let of_output = |output: &Output| {
         let at = |row: usize| {
             let inputs = output.inputs.iter().map(|&(term, channel)| of_terms[term][channel][row]);

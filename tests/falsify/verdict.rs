@@ -1,5 +1,6 @@
 //! A draw is run, and every band compared with the truth.
 
+use std::collections::BTreeSet;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::{Duration, Instant};
 
@@ -87,7 +88,7 @@ pub fn is_missed(misses: usize, open: usize) -> bool {
     misses as f64 > MISSES * open as f64
 }
 
-/// Runs a draw and compares. A band that seems to be missed is compared with the truth of a denser search.
+/// Runs a draw and compares. Rows of a band that seem to be missed are compared with the truth of a denser search.
 pub fn examine(draw: &Draw) -> Outcome {
     let begun = Instant::now();
     let result = match catch_unwind(AssertUnwindSafe(|| run(draw, begun))) {
@@ -99,15 +100,22 @@ pub fn examine(draw: &Draw) -> Outcome {
     if begun.elapsed() > patience() {
         return Outcome::Failed(Failure::OutOfTime);
     }
-    let truth = truth::ranges(draw, result.times(), 0);
-    let none = vec![vec![0.0; result.times().len()]; draw.outputs.len()];
-    let mut verdicts = judge(draw, &result, &truth, &none);
-    if verdicts.iter().any(Verdict::is_missed) {
-        let dense = truth::ranges(draw, result.times(), 1);
-        let apart = |a: &Range, b: &Range| (a.lower - b.lower).abs().max((a.upper - b.upper).abs());
-        let unsure: Vec<Vec<f64>> =
-            truth.iter().zip(&dense).map(|(a, b)| a.iter().zip(b).map(|(a, b)| apart(a, b)).collect()).collect();
-        verdicts = judge(draw, &result, &dense, &unsure);
+    let times = result.times();
+    let mut truth = truth::ranges(draw, times, 0);
+    let mut unsure = vec![vec![0.0; times.len()]; draw.outputs.len()];
+    let mut verdicts = judge(draw, &result, &truth, &unsure);
+    let missed = verdicts.iter().filter(|verdict| verdict.is_missed());
+    let rows: BTreeSet<usize> = missed.flat_map(|verdict| verdict.misses.iter().map(|miss| miss.row)).collect();
+    if !rows.is_empty() {
+        let at: Vec<f64> = std::iter::once(0.0).chain(rows.iter().map(|&row| times[row])).collect();
+        for (output, dense) in truth::ranges(draw, &at, 1).into_iter().enumerate() {
+            for (&row, dense) in rows.iter().zip(&dense[1..]) {
+                let known = &mut truth[output][row];
+                unsure[output][row] = (known.lower - dense.lower).abs().max((known.upper - dense.upper).abs());
+                *known = *dense;
+            }
+        }
+        verdicts = judge(draw, &result, &truth, &unsure);
     }
     Outcome::Judged(verdicts, seconds)
 }

@@ -78,12 +78,12 @@ simulation: {{ duration: {duration}, {step}, output_step: 0.1 }}
 }
 
 /// θ₁, θ₂ from straight down, and their rates (Lagrange's equations for equal masses on rods of 1 m).
-fn two_bobs_by_hand(p: f64, times: &[f64]) -> Vec<Vec<f64>> {
+fn two_bobs_by_hand(p: f64, times: &[f64]) -> Vec<[f64; 4]> {
     two_bobs_under(p, 9.81, 0.43, times)
 }
 
 /// The same with other accelerations of gravity and first rates.
-fn two_bobs_under(p: f64, g: f64, rate: f64, times: &[f64]) -> Vec<Vec<f64>> {
+fn two_bobs_under(p: f64, g: f64, rate: f64, times: &[f64]) -> Vec<[f64; 4]> {
     let pi = std::f64::consts::PI;
     let equation = |_: f64, y: &[f64], d: &mut [f64]| d.copy_from_slice(&rates_under(g, y));
     solve(equation, &[0.75 * pi * p, -0.55 * pi, rate, 0.67], times, 1e-14, 1e-2)
@@ -183,7 +183,7 @@ fn thousands_of_solutions_over_three_parameters_are_held() {
 }
 
 /// θ and its rate of the slider crank of Wu, Luo and Zhang in its minimal coordinate.
-fn slider_crank_by_hand(l1: f64, times: &[f64]) -> Vec<Vec<f64>> {
+fn slider_crank_by_hand(l1: f64, times: &[f64]) -> Vec<[f64; 2]> {
     let (l2, m1, m2, m3, c, k, torque) = (0.56, 0.37, 0.77, 0.45, 1.0, 5.0, -0.5);
     let equation = |_: f64, y: &[f64], d: &mut [f64]| {
         let (s, co) = y[0].sin_cos();
@@ -280,7 +280,7 @@ fn heavy_top_by_hand(axial: f64, spin: f64, times: &[f64]) -> Vec<Vec<f64>> {
         d[3] = 0.5 * (p * w[2] + a * w[1] - b * w[0]);
     };
     let rows = solve(equation, &[1.0, 0.0, 0.0, 0.0, 0.0, spin, -4.61538], times, 1e-14, 1e-3);
-    let centre = |y: &Vec<f64>| {
+    let centre = |y: &[f64; 7]| {
         let [p, a, b, c] = [y[0], y[1], y[2], y[3]];
         vec![2.0 * (a * b - p * c), p * p - a * a + b * b - c * c, 2.0 * (b * c + p * a)]
     };

@@ -157,17 +157,20 @@ pub fn post(random: &mut Random, scale: &Scale) -> Term {
     let speed = right.hypot(up);
     let size = speed * scale.duration;
     let curves = located(
-        (0.25 * radius / speed).min(0.3 * contact),
+        (radius / speed).min(0.3 * contact),
         [size, size, speed, speed],
         |p| [0.0, 0.0, p[0], p[1]],
         |p, y, sides| {
             let [_, _, x, height, radius, stiffness] = p[..6] else { unreachable!() };
             let [dx, dy] = [y[0] - x, y[1] - height];
-            let distance = dx.hypot(dy);
+            let distance = (dx * dx + dy * dy).sqrt();
             let push = if sides[0] { stiffness * (radius - distance) / distance } else { 0.0 };
             [y[2], y[3], push * dx, push * dy - 9.81]
         },
-        |p, y| [p[4] - (y[0] - p[2]).hypot(y[1] - p[3])],
+        |p, y| {
+            let [dx, dy] = [y[0] - p[2], y[1] - p[3]];
+            [p[4] - (dx * dx + dy * dy).sqrt()]
+        },
         |y| [y[0], y[1], y[3]],
     );
     let distance = named("sqrt((b#.x - X#)^2 + (b#.y - Y#)^2)", place);

@@ -136,7 +136,7 @@ pub fn clearance(random: &mut Random, scale: &Scale) -> Term {
     let stiffness = digits((PI / contact).powi(2), 3);
     let dissipation = if random.chance(0.5) { digits(random.between(0.05, 0.5) / speed, 2) } else { 0.0 };
     // As the law has it: rounded in the middle, which has no direction.
-    let off = |y: &[f64; 4], clearance: f64| y[0].hypot(y[1]).hypot(1e-4 * clearance);
+    let off = |y: &[f64; 4], clearance: f64| (y[0] * y[0] + y[1] * y[1] + 1e-8 * clearance * clearance).sqrt();
     let curves = located(
         (0.2 * contact).min(scale.duration / 200.0),
         [clearance, clearance, speed, speed],

@@ -21,12 +21,15 @@ pub(super) enum Basis {
 pub(super) struct Powers(Vec<Vec<u8>>);
 
 /// Products up to a degree, and the same up to one less times the root of each depth behind a surface: behind the
-/// surface on which an event is just grazed, instants and what follows go with the root of the distance to it.
+/// surface on which an event is just grazed, instants and what follows go with the root of the distance to it. Powers
+/// are those of places in a box about the samples: of a layer, which is thin, those of ξ would cancel.
 #[derive(Clone, Debug)]
 pub(super) struct Fitted {
     powers: Powers,
     depths: Vec<Level>,
     of_depths: Powers,
+    /// Middle and half width of the box about the samples along each axis.
+    about: Vec<(f64, f64)>,
 }
 
 /// A polynomial whose zeros are a surface in the box.
@@ -135,9 +138,20 @@ impl End {
 }
 
 impl Fitted {
-    pub fn new(degree: usize, depths: &[Level], k: usize) -> Self {
-        let depths = depths.to_vec();
-        Self { powers: Powers::up_to(degree, k), depths, of_depths: Powers::up_to(degree.saturating_sub(1), k) }
+    /// For samples at these ξ.
+    pub fn new(degree: usize, depths: &[Level], samples: &[Vec<f64>]) -> Self {
+        let k = samples.first().map_or(0, Vec::len);
+        let of_axis = |axis: usize| {
+            let own = samples.iter().map(|xi| xi[axis]);
+            let (low, high) = (own.clone().fold(f64::INFINITY, f64::min), own.fold(f64::NEG_INFINITY, f64::max));
+            (0.5 * (low + high), if high > low { 0.5 * (high - low) } else { 1.0 })
+        };
+        Self {
+            powers: Powers::up_to(degree, k),
+            depths: depths.to_vec(),
+            of_depths: Powers::up_to(degree.saturating_sub(1), k),
+            about: (0..k).map(of_axis).collect(),
+        }
     }
 
     pub fn len(&self) -> usize {
@@ -145,11 +159,12 @@ impl Fitted {
     }
 
     fn values(&self, xi: &[f64], into: &mut Vec<f64>) {
-        self.powers.values(xi, into);
+        let place: Vec<f64> = xi.iter().zip(&self.about).map(|(xi, (middle, half))| (xi - middle) / half).collect();
+        self.powers.values(&place, into);
         for depth in &self.depths {
             let root = (-depth.at(xi)).max(0.0).sqrt();
             let first = into.len();
-            self.of_depths.values(xi, into);
+            self.of_depths.values(&place, into);
             into[first..].iter_mut().for_each(|term| *term *= root);
         }
     }
@@ -234,7 +249,7 @@ mod tests {
         let margins: Vec<Vec<f64>> = (0..20).map(|index| vec![f64::from(index) / 10.0 - 0.95]).collect();
         let level = Level::through(&margins.iter().map(|xi| (&xi[..], 0.2 - xi[0])).collect::<Vec<_>>()).unwrap();
         let inside: Vec<Vec<f64>> = margins.into_iter().filter(|xi| xi[0] > 0.2).collect();
-        let basis = Basis::Fitted(Fitted::new(2, &[level], 1));
+        let basis = Basis::Fitted(Fitted::new(2, &[level], &inside));
         let values: Vec<f64> = inside.iter().map(|xi| f(xi[0])).collect();
         let squares = LeastSquares::new(&basis.values(&inside), vec![1.0; inside.len()]).unwrap();
         let (coefficients, left_out) = squares.fit(&values).unwrap();
@@ -242,5 +257,24 @@ mod tests {
         let [terms] = &basis.values(&[vec![0.201]])[..] else { panic!() };
         let value: f64 = terms.iter().zip(&coefficients).map(|(term, coefficient)| term * coefficient).sum();
         assert!((value - f(0.201)).abs() < 1e-8);
+    }
+
+    /// Samples of a layer 2e-3 wide: between them a line is what it is at them.
+    #[test]
+    fn terms_of_a_layer_do_not_cancel() {
+        let line = |x: f64| 1.28 - 0.3 * x;
+        let samples: Vec<Vec<f64>> = (0..31).map(|index| vec![-0.009 + 8e-5 * f64::from(index)]).collect();
+        let margins: Vec<f64> = samples.iter().map(|xi| -0.0066 - xi[0]).collect();
+        let all: Vec<(&[f64], f64)> = samples.iter().zip(&margins).map(|(xi, margin)| (&xi[..], -margin)).collect();
+        let basis = Basis::Fitted(Fitted::new(4, &[Level::through(&all).unwrap()], &samples));
+        let squares = LeastSquares::new(&basis.values(&samples), vec![1.0; samples.len()]).unwrap();
+        let values: Vec<f64> = samples.iter().map(|xi| line(xi[0])).collect();
+        let (coefficients, _) = squares.fit(&values).unwrap();
+        for index in 0..300 {
+            let xi = -0.009 + 8e-6 * f64::from(index);
+            let [terms] = &basis.values(&[vec![xi]])[..] else { panic!() };
+            let value: f64 = terms.iter().zip(&coefficients).map(|(term, coefficient)| term * coefficient).sum();
+            assert!((value - line(xi)).abs() < 1e-12, "{:e} at {xi}", value - line(xi));
+        }
     }
 }

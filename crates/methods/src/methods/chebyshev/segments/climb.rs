@@ -72,12 +72,15 @@ pub(super) fn ends(row: &SegmentRow, lattice: &Lattice) -> Vec<Ends> {
     };
     let extents: Vec<Extent> = of_outputs.iter().map(extent).collect();
     let places = extents.iter().flat_map(|extent| extent.places.iter().cloned()).collect();
-    let errors = row.errors(&row.piece.surrogate.points(places));
+    let points = row.piece.surrogate.points(places).into_iter().zip(of_outputs.iter().flatten());
+    let in_segment = |(point, climb): (Point, &Option<&Climb>)| {
+        (climb.map_or_else(|| point.segment(row.time), |climb| climb.segment), point)
+    };
+    let errors = row.errors(&points.map(in_segment).collect::<Vec<_>>());
     let count = 2 * row.outputs;
     let errors = |output: usize| [0, 1].map(|end| errors[output * count + 2 * output + end]);
     let has_corners = of_outputs.iter().flatten().flatten().any(|climb| is_corner(&climb.point.xi));
-    let points: Vec<Point> = seeds.places.iter().map(|(_, point)| point.clone()).collect();
-    let of_seeds = if has_corners { row.errors(&points) } else { Vec::new() };
+    let of_seeds = if has_corners { row.errors(&seeds.places) } else { Vec::new() };
     let is_held = |climb: Option<&Climb>, error: f64| {
         climb.is_some_and(|climb| is_corner(&climb.point.xi) && is_held(row, &seeds, &of_seeds, climb, error))
     };
@@ -149,7 +152,9 @@ fn begun(row: &SegmentRow, lattice: &Lattice) -> (Seeds, Vec<Climb>) {
         let [begin, end] = [point.times[segment], point.times[segment + 1]];
         (-TUNING.beyond_of_seed..=1.0 + TUNING.beyond_of_seed).contains(&((time - begin) / (end - begin)))
     };
-    seeds.retain(|(segment, point)| point.is_inside() && is_in_segment(*segment, point));
+    // A sample that a surface leaves outside of its word's part is of it nevertheless.
+    let is_inside = |point: &Point| point.is_inside() || row.piece.samples.contains(&point.xi);
+    seeds.retain(|(segment, point)| is_in_segment(*segment, point) && is_inside(point));
     if seeds.is_empty() {
         return (Seeds::default(), Vec::new());
     }

@@ -10,7 +10,7 @@ use super::piece::{FittedMotions, Piece, ValidationMotions};
 use super::surrogate::SegmentSurrogate;
 use super::tuning::TUNING;
 use crate::methods::ensemble::{Ensemble, EnsembleError};
-use crate::numerics::{CutMotions, LeastSquares, largest};
+use crate::numerics::{CutMotions, LeastSquares, SegmentMotions, corners, largest, spread};
 
 /// Samples, and what their polynomials are held against.
 pub(super) struct Fitting<'v> {
@@ -31,6 +31,17 @@ impl Fitting<'_> {
     /// # Errors
     /// Where a sample cannot be assembled.
     pub fn pieces(mut self, ensemble: &dyn Ensemble) -> Result<Option<Found>, EnsembleError> {
+        let shows = |word: &SegmentMotions| !word.samples.is_empty();
+        if !self.samples.motions.words.iter().all(shows) {
+            // A word that none of the samples has was met by one of those that are spread over the box.
+            let k = ensemble.domain().dimension();
+            let middle = vec![vec![0.0; k]];
+            let mut others = [middle, corners(k, TUNING.corners), spread(k, TUNING.samples_of_parts * k)].concat();
+            others.retain(|xi| !self.samples.xi.contains(xi));
+            if !others.is_empty() && !self.add(ensemble, others)? {
+                return Ok(None);
+            }
+        }
         let words = self.samples.motions.words.len();
         let mut parts: Vec<WordPart> = (0..words).map(|word| WordPart::of_word(word, &self.samples.motions)).collect();
         let (mut layer, mut covered) = (0, 0);
@@ -63,7 +74,9 @@ impl Fitting<'_> {
                     return Ok(None);
                 }
             } else if next.len() == parts.len() {
+                let all_known = self.samples.motions.words.iter().all(shows);
                 let known_to = self.samples.motions.known_to.min(self.direct.known_to);
+                let known_to = if all_known { known_to } else { 0.0 };
                 return Ok(Some((found, self.samples.xi.len(), known_to)));
             }
             layer += usize::from(next.len() > parts.len());
@@ -84,10 +97,10 @@ impl Fitting<'_> {
         let places = self.samples.places(part, levels);
         let motions = self.samples.motions.words[part.word].picked(&places);
         let xi: Vec<Vec<f64>> = motions.samples.iter().map(|&sample| self.samples.xi[sample].clone()).collect();
-        let (k, count) = (xi.first()?.len(), xi.len());
-        let depths = part.depths(levels);
+        xi.first()?;
+        let (count, depths) = (xi.len(), part.depths(levels));
         let of_degree = |degree: usize, depths: &[Level]| {
-            let basis = Basis::Fitted(Fitted::new(degree, depths, k));
+            let basis = Basis::Fitted(Fitted::new(degree, depths, &xi));
             let is_enough = count as f64 >= TUNING.samples_a_term * basis.len() as f64 || degree == 0;
             let squares = LeastSquares::new(&basis.values(&xi), vec![1.0; count]).filter(|_| is_enough)?;
             let left_out = |values: &[f64]| {
@@ -135,10 +148,12 @@ mod tests {
         BoundaryMargins, ParameterBox, STEP_NODES, Sample, SegmentMotions, Surrogate, largest, spread, step_nodes,
     };
 
-    /// Balls thrown up at speeds from 4.5 to 5.5 m/s, under a ceiling at a height of 1.3 m on a spring of ω².
+    /// Balls thrown up at speeds from 4.5 to 5.5 m/s, under a ceiling at a height of 1.3 m on a spring of ω²; those
+    /// that are faster than a speed pass beside it.
     struct Throws {
         domain: ParameterBox,
         omega: f64,
+        beside: f64,
     }
 
     const G: f64 = 9.81;
@@ -157,7 +172,7 @@ mod tests {
         /// Margin, instants, and the motion in each segment of a speed.
         fn cut(&self, speed: f64) -> (f64, Vec<f64>, Vec<[f64; 2]>) {
             let height = 1.3;
-            let margin = height - speed * speed / (2.0 * G);
+            let margin = (height - speed * speed / (2.0 * G)).max(speed - self.beside);
             if margin >= 0.0 {
                 return (margin, vec![0.0, 1.0], vec![[0.0, speed]]);
             }
@@ -255,23 +270,25 @@ mod tests {
         }
     }
 
+    /// Throws, and polynomials of those of the grid's samples.
+    fn thrown(omega: f64, beside: f64) -> (Throws, Found) {
+        let (nominal, lower, upper) = (vec![5.0].into(), vec![4.5], vec![5.5]);
+        let throws =
+            Throws { domain: ParameterBox { nominal, lower, upper, ..ParameterBox::default() }, omega, beside };
+        let grid = Surrogate::tensor(&[5], &[6]);
+        let cut = |xi: &[Vec<f64>]| throws.segments(&throws.domain.samples(xi)).unwrap().unwrap();
+        let samples = Samples { xi: grid.samples().to_vec(), motions: cut(grid.samples()) };
+        let points = spread(1, 8);
+        let direct = cut(&points);
+        let fitting = Fitting { samples, degree: 8, points: &points, direct };
+        let found = fitting.pieces(&throws).unwrap().unwrap();
+        (throws, found)
+    }
+
     #[test]
     fn layers_behind_a_surface_are_resolved() {
         for omega in [30.0, 300.0] {
-            let domain = ParameterBox {
-                nominal: vec![5.0].into(),
-                lower: vec![4.5],
-                upper: vec![5.5],
-                ..ParameterBox::default()
-            };
-            let throws = Throws { domain, omega };
-            let grid = Surrogate::tensor(&[5], &[6]);
-            let cut = |xi: &[Vec<f64>]| throws.segments(&throws.domain.samples(xi)).unwrap().unwrap();
-            let samples = Samples { xi: grid.samples().to_vec(), motions: cut(grid.samples()) };
-            let points = spread(1, 8);
-            let direct = cut(&points);
-            let fitting = Fitting { samples, degree: 8, points: &points, direct };
-            let (pieces, count, _) = fitting.pieces(&throws).unwrap().unwrap();
+            let (throws, (pieces, count, _)) = thrown(omega, f64::INFINITY);
             assert!(count < 120, "{count}");
             for xi in spread(1, 97) {
                 let beyond =
@@ -287,5 +304,15 @@ mod tests {
                 assert!(largest(stated.iter().copied()) < 1e-4);
             }
         }
+    }
+
+    /// The ceiling is met from 5.05 to 5.1 m/s only, where none of the grid's samples is.
+    #[test]
+    fn a_word_that_no_sample_of_the_grid_has_is_fitted() {
+        let (throws, (pieces, _, known_to)) = thrown(30.0, 5.1);
+        let words = |xi: &Vec<f64>| throws.cut(throws.domain.value(0, xi[0])).2.len();
+        assert!(Surrogate::tensor(&[5], &[6]).samples().iter().map(words).all(|segments| segments == 1));
+        let met = pieces.iter().filter(|piece| piece.surrogate.segments() == 3);
+        assert!(met.count() > 0 && known_to > 0.0);
     }
 }

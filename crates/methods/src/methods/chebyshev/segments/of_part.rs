@@ -32,7 +32,7 @@ pub fn number_as_motion(samples: Vec<usize>, numbers: Option<&[f64]>) -> Segment
 }
 
 /// The number itself.
-struct Number;
+pub(super) struct Number;
 
 impl Closure for Number {
     fn independent(&self) -> &[usize] {

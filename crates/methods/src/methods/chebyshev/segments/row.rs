@@ -67,20 +67,21 @@ impl SegmentRow<'_> {
         self.closure.outputs(self.time, count, parameters, motion)
     }
 
-    /// How far the polynomials' errors move outputs at points (output, point): there an event that is near may have
-    /// been already, or not yet, each line may be off by its own error, and a surface beside it by its.
-    pub fn errors(&self, points: &[Point]) -> Vec<f64> {
+    /// How far the polynomials' errors move outputs at points (output, point), each in the segment in which its value was
+    /// taken: there an event that is near may have been already, or not yet, each line may be off by its own error, and a
+    /// surface beside it by its.
+    pub fn errors(&self, places: &[(usize, Point)]) -> Vec<f64> {
         let surrogate = &self.piece.surrogate;
-        let (count, n) = (points.len(), surrogate.lines() / 2);
+        let (count, n) = (places.len(), surrogate.lines() / 2);
         let at = |shift: f64| {
-            let shifted = |point: &Point| {
-                let segment = point.segment(self.time);
+            let shifted = |(segment, point): &(usize, Point)| {
                 let times = &self.piece.errors_at(point).times;
-                self.time + shift * times[segment].max(times[segment + 1])
+                self.time + shift * times[*segment].max(times[segment + 1])
             };
-            points.iter().map(|point| (point, point.segment(shifted(point)), self.time)).collect::<Vec<_>>()
+            places.iter().map(|own| (&own.1, own.1.segment(shifted(own)), self.time)).collect::<Vec<_>>()
         };
-        let here = self.outputs_on(&at(0.0));
+        let own: Vec<_> = places.iter().map(|(segment, point)| (point, *segment, self.time)).collect();
+        let here = self.outputs_on(&own);
         let mut moved: Vec<Vec<f64>> = vec![vec![0.0; count]; self.outputs];
         let mut add = |ways: [Vec<f64>; 2]| {
             for (output, moved) in moved.iter_mut().enumerate() {
@@ -94,28 +95,28 @@ impl SegmentRow<'_> {
         for line in self.closure.independent().iter().flat_map(|&coordinate| [coordinate, n + coordinate]) {
             add([-1.0, 1.0].map(|sign| {
                 let mut motion = vec![0.0; 2 * n * count];
-                for (index, point) in points.iter().enumerate() {
-                    let segment = point.segment(self.time);
-                    let step = surrogate.step(point, segment, self.time);
-                    let error = self.piece.errors_at(point).of_line(segment, step, line);
-                    for (number, value) in surrogate.motion(point, segment, self.time).enumerate() {
+                for (index, (segment, point)) in places.iter().enumerate() {
+                    let step = surrogate.step(point, *segment, self.time);
+                    let error = self.piece.errors_at(point).of_line(*segment, step, line);
+                    for (number, value) in surrogate.motion(point, *segment, self.time).enumerate() {
                         let by = if number == line { sign * error } else { 0.0 };
                         motion[number * count + index] = value + by;
                     }
                 }
-                self.closed(points.iter().map(|point| point.xi.as_slice()), count, motion)
+                self.closed(places.iter().map(|(_, point)| point.xi.as_slice()), count, motion)
             }));
         }
         for end in 0..surrogate.ends.len() {
-            add([-1.0, 1.0].map(|sign| self.outputs_at(&self.beside(points, end, sign))));
+            add([-1.0, 1.0].map(|sign| self.outputs_at(&self.beside(places, end, sign))));
         }
         // Outside of the samples of a fit errors are larger.
-        let far: Vec<f64> = points.iter().map(|point| surrogate.leverage(&point.xi).max(1.0).sqrt()).collect();
+        let far = |(_, point): &(usize, Point)| surrogate.leverage(&point.xi).max(1.0).sqrt();
+        let far: Vec<f64> = places.iter().map(far).collect();
         moved.iter().flat_map(|moved| moved.iter().zip(&far).map(|(moved, far)| far * moved)).collect()
     }
 
     /// Points that are beside a surface, moved across it as far as its error is.
-    fn beside(&self, points: &[Point], end: usize, sign: f64) -> Vec<Point> {
+    fn beside(&self, places: &[(usize, Point)], end: usize, sign: f64) -> Vec<Point> {
         let surface = &self.piece.surrogate.ends[end];
         let across = |point: &Point| {
             let mut xi = point.xi.clone();
@@ -135,7 +136,7 @@ impl SegmentRow<'_> {
             }
             xi
         };
-        self.piece.surrogate.points(points.iter().map(across).collect())
+        self.piece.surrogate.points(places.iter().map(|(_, point)| across(point)).collect())
     }
 }
 
@@ -176,5 +177,41 @@ impl Predicted for SensedRow<'_> {
 
     fn predict_some(&self, outputs: &[usize], points: &[Vec<f64>]) -> Vec<f64> {
         self.row.some_outputs(outputs, points)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::basis::Basis;
+    use super::super::climb;
+    use super::super::of_part::Number;
+    use super::super::seeds::Lattice;
+    use super::super::surrogate::{SegmentErrors, SegmentSurrogate};
+    use super::*;
+    use crate::numerics::{STEP_NODES, SegmentMotions, SurrogateWork};
+
+    /// Polynomials have a ball leave a post before it meets it: −6 behind it is no more known there than 0 before it.
+    #[test]
+    fn an_end_in_another_segment_than_its_place_has_the_difference_for_error() {
+        let grid = Surrogate::tensor(&[1], &[2]);
+        let of_xi = |at: &dyn Fn(f64) -> f64| grid.samples().iter().map(|xi| at(xi[0])).collect::<Vec<f64>>();
+        let node = |value: f64| [of_xi(&|_| value), of_xi(&|_| 0.0)].concat();
+        let motions = SegmentMotions {
+            samples: vec![0, 1],
+            steps: vec![vec![1.0]; 3],
+            times: vec![of_xi(&|_| 0.0), of_xi(&|xi| 0.5 + 0.3 * xi), of_xi(&|xi| 0.6 - 0.3 * xi), of_xi(&|_| 1.0)],
+            nodes: [0.0, 0.0, -6.0].map(|value| vec![node(value); STEP_NODES]).to_vec(),
+        };
+        let mut work = SurrogateWork::default();
+        let coefficients = |values: &[f64]| grid.coefficients(values, &mut work);
+        let surrogate = SegmentSurrogate::new(Basis::Grid(grid.basis().clone()), Vec::new(), &motions, coefficients);
+        let errors = SegmentErrors { times: vec![1e-3; 4], lines: vec![vec![vec![1e-9; 2]]; 3] };
+        let piece = Piece::new(surrogate, errors, Vec::new());
+        let domain =
+            ParameterBox { nominal: vec![0.0].into(), lower: vec![-1.0], upper: vec![1.0], ..ParameterBox::default() };
+        let row = SegmentRow { domain: &domain, outputs: 1, piece: &piece, closure: &Number, time: 0.4 };
+        let [ends] = &climb::ends(&row, &Lattice::new(&piece.surrogate, &[], 1))[..] else { panic!() };
+        let (lower, error) = (ends.extent.range.lower, ends.errors[0]);
+        assert!((lower + 6.0).abs() < 1e-9 && error >= 6.0 - 1e-9, "{lower} ± {error}");
     }
 }

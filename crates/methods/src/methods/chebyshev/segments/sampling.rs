@@ -58,7 +58,7 @@ impl Fitting<'_> {
             let own = &self.samples.motions.words[part.word].samples;
             let inside: Vec<&Vec<f64>> =
                 self.samples.places(part, &levels).iter().map(|&index| &xi[own[index]]).collect();
-            let terms = Fitted::new(self.degree, &depths, k).len();
+            let terms = Fitted::new(self.degree, &depths, xi).len();
             let lacks = ((TUNING.samples_a_term * terms as f64) as usize + 2).saturating_sub(inside.len());
             let fits = |point: &Vec<f64>| ends.iter().all(|end| end.margin(point) >= 0.0) && !xi.contains(point);
             // Those beside a surface, on lines across it.
