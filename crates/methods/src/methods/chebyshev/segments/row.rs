@@ -2,7 +2,7 @@
 
 use super::piece::Piece;
 use super::pieces::Pieces;
-use super::surrogate::Point;
+use super::surrogate::{Point, SegmentErrors};
 use super::tuning::TUNING;
 use crate::methods::chebyshev::sensitivity::Predicted;
 use crate::methods::closure::Closure;
@@ -67,11 +67,15 @@ impl SegmentRow<'_> {
         self.closure.outputs(self.time, count, parameters, motion)
     }
 
-    /// How far the polynomials' errors move outputs at points (output, point): there an event that is near may have
-    /// been already, or not yet, each line may be off by its own error, and a surface beside it by its.
+    /// How far the polynomials' errors move outputs at points (output, point), which are ends of a range: there an
+    /// event that is near may have been already, or not yet, each line may be off by its own error, and a surface beside
+    /// it by its.
+    ///
+    /// Lines have errors at times and at shares of their segment. Either is enough: within a contact, where a late
+    /// instant makes a line late, an end at some share is found at that share beside it.
     pub fn errors(&self, points: &[Point]) -> Vec<f64> {
         let surrogate = &self.piece.surrogate;
-        let (count, n) = (points.len(), surrogate.lines() / 2);
+        let count = points.len();
         let at = |shift: f64| {
             let shifted = |point: &Point| {
                 let segment = point.segment(self.time);
@@ -81,37 +85,109 @@ impl SegmentRow<'_> {
             points.iter().map(|point| (point, point.segment(shifted(point)), self.time)).collect::<Vec<_>>()
         };
         let here = self.outputs_on(&at(0.0));
-        let mut moved: Vec<Vec<f64>> = vec![vec![0.0; count]; self.outputs];
-        let mut add = |ways: [Vec<f64>; 2]| {
-            for (output, moved) in moved.iter_mut().enumerate() {
-                for (index, moved) in moved.iter_mut().enumerate() {
-                    let value = |way: &Vec<f64>| way[output * count + index] - here[output * count + index];
-                    *moved += largest(ways.iter().map(value));
-                }
-            }
+        let of = |ways: [Vec<f64>; 2]| -> Vec<f64> {
+            let value = |index: usize| largest(ways.iter().map(|way| way[index] - here[index]));
+            (0..here.len()).map(value).collect()
         };
-        add([-1.0, 1.0].map(|shift| self.outputs_on(&at(shift))));
+        let mut moved = of([-1.0, 1.0].map(|shift| self.outputs_on(&at(shift))));
+        let add = |moved: &mut Vec<f64>, by: &[f64]| moved.iter_mut().zip(by).for_each(|(own, by)| *own += by);
+        add(&mut moved, &self.of_lines(points, &here, SegmentErrors::of_line));
+        let mut at_shares = self.along(points, &here);
+        add(&mut at_shares, &self.of_lines(points, &here, SegmentErrors::of_share));
+        // What is not known at times stays so.
+        moved.iter_mut().zip(at_shares).filter(|(own, other)| other < *own).for_each(|(own, other)| *own = other);
+        for end in 0..surrogate.ends.len() {
+            add(&mut moved, &of([-1.0, 1.0].map(|sign| self.outputs_at(&self.beside(points, end, sign)))));
+        }
+        // Outside of the samples of a fit errors are larger.
+        let far: Vec<f64> = points.iter().map(|point| surrogate.leverage(&point.xi).max(1.0).sqrt()).collect();
+        moved
+            .chunks_exact(count.max(1))
+            .flat_map(|moved| moved.iter().zip(&far).map(|(moved, far)| far * moved))
+            .collect()
+    }
+
+    /// How far outputs at points move, from what they are there, where each line is off by its error in a step of a
+    /// segment.
+    fn of_lines(
+        &self,
+        points: &[Point],
+        here: &[f64],
+        error: fn(&SegmentErrors, usize, usize, usize) -> f64,
+    ) -> Vec<f64> {
+        let surrogate = &self.piece.surrogate;
+        let (count, n) = (points.len(), surrogate.lines() / 2);
+        let mut moved = vec![0.0; here.len()];
         for line in self.closure.independent().iter().flat_map(|&coordinate| [coordinate, n + coordinate]) {
-            add([-1.0, 1.0].map(|sign| {
+            let ways = [-1.0, 1.0].map(|sign| {
                 let mut motion = vec![0.0; 2 * n * count];
                 for (index, point) in points.iter().enumerate() {
                     let segment = point.segment(self.time);
                     let step = surrogate.step(point, segment, self.time);
-                    let error = self.piece.errors_at(point).of_line(segment, step, line);
+                    let error = error(self.piece.errors_at(point), segment, step, line);
                     for (number, value) in surrogate.motion(point, segment, self.time).enumerate() {
                         let by = if number == line { sign * error } else { 0.0 };
                         motion[number * count + index] = value + by;
                     }
                 }
                 self.closed(points.iter().map(|point| point.xi.as_slice()), count, motion)
-            }));
+            });
+            for (index, moved) in moved.iter_mut().enumerate() {
+                *moved += largest(ways.iter().map(|way| way[index] - here[index]));
+            }
         }
-        for end in 0..surrogate.ends.len() {
-            add([-1.0, 1.0].map(|sign| self.outputs_at(&self.beside(points, end, sign))));
-        }
-        // Outside of the samples of a fit errors are larger.
-        let far: Vec<f64> = points.iter().map(|point| surrogate.leverage(&point.xi).max(1.0).sqrt()).collect();
-        moved.iter().flat_map(|moved| moved.iter().zip(&far).map(|(moved, far)| far * moved)).collect()
+        moved
+    }
+
+    /// How far outputs at points (output, point) differ from those at the same share of the segment, as far beside as
+    /// the errors of its instants move that share; unknown where the box ends before.
+    fn along(&self, points: &[Point], here: &[f64]) -> Vec<f64> {
+        let surrogate = &self.piece.surrogate;
+        let count = points.len();
+        let at_share = |point: &Point, (segment, share): (usize, f64)| {
+            let [begin, end] = [point.times[segment], point.times[segment + 1]];
+            begin + share * (end - begin)
+        };
+        let share = |point: &Point| {
+            let segment = point.segment(self.time);
+            (segment, surrogate.share(point, segment, self.time).0)
+        };
+        let shares: Vec<(usize, f64)> = points.iter().map(share).collect();
+        let k = self.domain.dimension();
+        let moved = |point: &Point, axis: usize| {
+            let mut xi = point.xi.clone();
+            xi[axis] += TUNING.step_of_surfaces;
+            xi
+        };
+        let around = points.iter().flat_map(|point| (0..k).map(move |axis| moved(point, axis)));
+        let around = surrogate.points(around.collect());
+        let way = |index: usize| -> Vec<f64> {
+            let (point, own) = (&points[index], shares[index]);
+            let errors = &self.piece.errors_at(point).times;
+            // Not out of the box.
+            let is_free = |xi: f64| xi.abs() < 1.0 - TUNING.step_of_surfaces;
+            let slope = |axis: usize| {
+                let later = at_share(&around[index * k + axis], own) - self.time;
+                if is_free(point.xi[axis]) { later / TUNING.step_of_surfaces } else { 0.0 }
+            };
+            let slopes: Vec<f64> = (0..k).map(slope).collect();
+            let square: f64 = slopes.iter().map(|slope| slope * slope).sum();
+            let by = errors[own.0].max(errors[own.0 + 1]) / square;
+            slopes.iter().map(|slope| by * slope).collect()
+        };
+        let ways: Vec<Vec<f64>> = (0..count).map(way).collect();
+        let beside = |sign: f64| -> Vec<f64> {
+            let xi = points.iter().zip(&ways);
+            let xi = xi.map(|(point, way)| point.xi.iter().zip(way).map(|(xi, by)| xi + sign * by).collect());
+            let others = surrogate.points(xi.collect());
+            let at: Vec<(&Point, usize, f64)> =
+                others.iter().zip(&shares).map(|(point, &own)| (point, own.0, at_share(point, own))).collect();
+            let is_within = |index: usize| others[index % count].xi.iter().all(|xi| xi.abs() <= 1.0);
+            let values = self.outputs_on(&at).into_iter().enumerate();
+            values.map(|(index, value)| if is_within(index) { value } else { f64::NAN }).collect()
+        };
+        let both = [beside(-1.0), beside(1.0)];
+        (0..here.len()).map(|index| largest(both.iter().map(|values| values[index] - here[index]))).collect()
     }
 
     /// Points that are beside a surface, moved across it as far as its error is.
