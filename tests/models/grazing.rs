@@ -18,7 +18,7 @@ outputs: {{ y: ball.y, v: ball.vy }}
 simulation: {{ duration: {duration}, step: {step}, output_step: {output_step} }}
 bounds: {{ {bounds} }}
 ",
-        step = duration / 1000.0
+        step = output_step / 50.0
     )
 }
 
@@ -30,10 +30,11 @@ fn under(g: f64, height: f64, speed: f64, stiffness: f64, t: f64) -> [f64; 2] {
 }
 
 /// A contact that is entered with less than g/ω = 0.46 mm/s takes as long as the throw would have been above the
-/// ceiling; a faster one ends it at once. What is told of the faster ones leaves the slow ones out by πg/ω = 1.4 mm/s.
+/// ceiling; a faster one ends it at once. Polynomials through the faster ones leave the slow ones out by
+/// πg/ω = 1.4 mm/s.
 #[test]
 fn slow_contacts_are_told_apart() {
-    let (height, stiffness) = (0.01826, 4.503e8);
+    let (height, stiffness): (f64, f64) = (0.01826, 4.503e8);
     let text = throw(
         ["9.81", "0.01826", "{ interval: [0.4714, 0.6686] }", "4.503e8"],
         0.095,

@@ -77,8 +77,8 @@ impl<'s> SegmentRun<'s> {
         Path::start(self.simulator, program, sample, self.duration, self.segments.tolerance)
     }
 
-    /// The motions in their segments, to the end, but those of which an instant cannot be solved for; `None` where that
-    /// is all of them.
+    /// The motions in their segments, to the end, but those of which an instant cannot be solved for; `None` where
+    /// these are all.
     pub fn motions(mut self) -> Option<CutMotions> {
         let strays = |tile: &&SegmentRows| tile.tile.word.is_none();
         let deviates = |tile: &SegmentRows| tile.tile.deviates.unwrap_or(f64::INFINITY);
@@ -96,7 +96,7 @@ impl<'s> SegmentRun<'s> {
             gathered(&tiles, &word.steps)
         };
         let words = (0..self.segments.words.len()).map(of_word).collect();
-        // What is lost is no sample of its word.
+        // Lost samples are of no word.
         for tile in &self.tiles {
             let lost = tile.tile.samples.iter().zip(&tile.tile.lost).filter(|(_, lost)| **lost);
             lost.for_each(|(&sample, _)| self.words[sample] = None);

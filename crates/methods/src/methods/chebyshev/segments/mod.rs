@@ -12,7 +12,8 @@
 //! - `of_part`: a number that motions have in a part of the box only;
 //! - `row`: the outputs at a time, and how far the polynomials' errors move them;
 //! - `seeds`: where a range is searched for, and `climb`: the search within the part of the box that is in a segment,
-//!   and on its surfaces; `ends`: the ends that it finds; `held`: which of them are a corner's, however polynomials err.
+//!   and on its surfaces; `ends`: the ends that it finds;
+//! - `held`: which of these are a corner's, however the polynomials err.
 
 mod basis;
 mod climb;

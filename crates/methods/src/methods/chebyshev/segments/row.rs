@@ -68,8 +68,8 @@ impl SegmentRow<'_> {
     }
 
     /// How far the polynomials' errors move outputs at points (output, point), which are ends of a range: there an
-    /// event that is near may have been already, or not yet, each line may be off by its own error, and a surface beside
-    /// it by its.
+    /// event that is near may have been already, or not yet, each line may be off by its own error, and a surface
+    /// beside it by its.
     ///
     /// Lines have errors at times and at shares of their segment. Either is enough: within a contact, where a late
     /// instant makes a line late, an end at some share is found at that share beside it.
@@ -94,7 +94,7 @@ impl SegmentRow<'_> {
         add(&mut moved, &self.of_lines(points, &here, SegmentErrors::of_line));
         let mut at_shares = self.along(points, &here);
         add(&mut at_shares, &self.of_lines(points, &here, SegmentErrors::of_share));
-        // What is not known at times stays so.
+        // Errors that are unknown at times stay so.
         moved.iter_mut().zip(at_shares).filter(|(own, other)| other < *own).for_each(|(own, other)| *own = other);
         for end in 0..surrogate.ends.len() {
             add(&mut moved, &of([-1.0, 1.0].map(|sign| self.outputs_at(&self.beside(points, end, sign)))));
@@ -107,7 +107,7 @@ impl SegmentRow<'_> {
             .collect()
     }
 
-    /// How far outputs at points move, from what they are there, where each line is off by its error in a step of a
+    /// How far outputs at points move, from their values there, where each line is off by its error in a step of a
     /// segment.
     fn of_lines(
         &self,

@@ -37,8 +37,8 @@ impl Lattice {
         Self { points, on_ends: 0, edges: edges.collect() }.within(surrogate)
     }
 
-    /// What of the lattice is inside of the surfaces that end the part, where there are any: outside of them its
-    /// polynomials say nothing of where an event is. A part may be thinner than the lattice's edges are long.
+    /// The lattice inside of the surfaces that end the part, where there are any: outside of them its polynomials say
+    /// nothing of where an event is. A part may be thinner than the lattice's edges are long.
     fn within(self, surrogate: &SegmentSurrogate) -> Self {
         if surrogate.ends.is_empty() {
             return self;

@@ -110,7 +110,7 @@ tuning! {
         /// motions may differ from those that polynomials tell.
         grazing_shares: [f64; 3] = [1e-4, 1e-6, 1e-8], moves "Chebyshev bounds through events";
         /// Further samples at each of these depths for each dimension of the surface.
-        grazing_samples: usize = 4, moves "Chebyshev bounds through events";
+        grazing_samples: usize = 8, moves "Chebyshev bounds through events";
         /// Samples are no nearer to a surface than so many times its error, within which they may be on its other side.
         beyond_error: f64 = 2.0, moves "Chebyshev bounds through events";
         /// Halvings of a line on which a level is looked for.
