@@ -44,6 +44,7 @@ mod formulas;
 mod formulations;
 mod gradients;
 mod gradients_through_events;
+mod grazing;
 mod half_car;
 mod hard_cases;
 mod honesty;

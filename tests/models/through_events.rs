@@ -54,7 +54,7 @@ pub fn elastic(height: f64, stiffness: f64, t: f64) -> [f64; 2] {
 }
 
 /// Integrator of the summary, and simulations of a method.
-fn integrated(summary: &Summary, method: &str) -> (bool, usize, usize) {
+pub fn integrated(summary: &Summary, method: &str) -> (bool, usize, usize) {
     let of_method = summary.methods.iter().find(|own| own.method == method).unwrap();
     let between_events = summary.integration.as_ref().is_some_and(|name| name.contains("between events"));
     (between_events, of_method.simulations, of_method.steps)
@@ -74,7 +74,7 @@ fn assert_true(bounds: &Bounds, name: &str, stated: f64, slack: f64, truth: impl
     }
 }
 
-fn range(values: impl Iterator<Item = f64>) -> [f64; 2] {
+pub fn range(values: impl Iterator<Item = f64>) -> [f64; 2] {
     values.fold([f64::INFINITY, f64::NEG_INFINITY], |[lower, upper], value| [lower.min(value), upper.max(value)])
 }
 
@@ -156,7 +156,7 @@ const HEIGHT: f64 = 1.3;
 
 /// Height and velocity of the throw under a ceiling: parabolas, and in contact
 /// y = H + (u/ω) sin ωτ − (g/ω²)(1 − cos ωτ).
-fn thrown(height: f64, speed: f64, stiffness: f64, t: f64) -> [f64; 2] {
+pub fn thrown(height: f64, speed: f64, stiffness: f64, t: f64) -> [f64; 2] {
     let g = 9.81;
     let left = speed * speed - 2.0 * g * height;
     let fly = |t: f64| [speed * t - 0.5 * g * t * t, speed - g * t];
@@ -224,7 +224,7 @@ fn taylor_polynomials_go_through_events() {
 
 /// Asserts that a band is not flagged, and has the truths within its errors.
 #[track_caller]
-fn assert_within(bounds: &Bounds, name: &str, method: Method, slack: f64, truth: impl Fn(f64) -> [f64; 2]) {
+pub fn assert_within(bounds: &Bounds, name: &str, method: Method, slack: f64, truth: impl Fn(f64) -> [f64; 2]) {
     let band = band(output(bounds, name), method);
     assert!(!band.error.unresolved.contains(&true), "{name} is flagged: {:?}", band.error.total);
     for (row, &t) in bounds.times.iter().enumerate() {

@@ -77,14 +77,16 @@ impl<'s> SegmentRun<'s> {
         Path::start(self.simulator, program, sample, self.duration, self.segments.tolerance)
     }
 
-    /// The motions in their segments, to the end; `None` where an instant cannot be solved for.
+    /// The motions in their segments, to the end, but those of which an instant cannot be solved for; `None` where
+    /// these are all.
     pub fn motions(mut self) -> Option<CutMotions> {
         let strays = |tile: &&SegmentRows| tile.tile.word.is_none();
         let deviates = |tile: &SegmentRows| tile.tile.deviates.unwrap_or(f64::INFINITY);
         let known_to = self.tiles.iter().filter(strays).map(deviates).fold(self.segments.horizon, f64::min);
         self.tiles.retain(|tile| tile.tile.word.is_some());
         self.tiles.par_iter_mut().for_each(|tile| tile.tile.march_to_the_end());
-        if self.tiles.iter().any(|tile| deviates(tile) < self.segments.horizon) {
+        let own = || self.tiles.iter().flat_map(|tile| &tile.tile.lost[..tile.tile.samples.len()]);
+        if own().next().is_some() && own().all(|lost| *lost) {
             return None;
         }
         let of_word = |number: usize| {
@@ -94,6 +96,11 @@ impl<'s> SegmentRun<'s> {
             gathered(&tiles, &word.steps)
         };
         let words = (0..self.segments.words.len()).map(of_word).collect();
+        // Lost samples are of no word.
+        for tile in &self.tiles {
+            let lost = tile.tile.samples.iter().zip(&tile.tile.lost).filter(|(_, lost)| **lost);
+            lost.for_each(|(&sample, _)| self.words[sample] = None);
+        }
         let boundaries = self.segments.boundaries.iter().map(|boundary| self.margins(boundary)).collect();
         Some(CutMotions { words, boundaries, known_to })
     }
@@ -120,9 +127,10 @@ fn gathered(tiles: &[&SegmentTile], steps: &[Vec<f64>]) -> SegmentMotions {
         let parts: Vec<(Vec<f64>, &SegmentTile)> = tiles.iter().map(|tile| (of_tile(tile), *tile)).collect();
         let lines = parts.first().map_or(0, |(values, tile)| values.len() / tile.width());
         let line = |line: usize| {
-            parts
-                .iter()
-                .flat_map(move |(values, tile)| values[line * tile.width()..][..tile.samples.len()].iter().copied())
+            let of_tile = move |(values, tile): &'_ (Vec<f64>, &SegmentTile)| {
+                tile.kept().map(|lane| values[line * tile.width() + lane]).collect::<Vec<f64>>()
+            };
+            parts.iter().flat_map(of_tile)
         };
         (0..lines).flat_map(line).collect()
     };
@@ -138,7 +146,7 @@ fn gathered(tiles: &[&SegmentTile], steps: &[Vec<f64>]) -> SegmentMotions {
         (0..count).map(|node| of_all(&|tile| tile.recorded[number].nodes[node].clone())).collect()
     };
     SegmentMotions {
-        samples: tiles.iter().flat_map(|tile| tile.samples.iter().copied()).collect(),
+        samples: tiles.iter().flat_map(|tile| tile.kept().map(|lane| tile.samples[lane])).collect(),
         steps: steps.to_vec(),
         times: (0..count).map(begin).chain(count.checked_sub(1).map(end)).collect(),
         nodes: (0..count).map(nodes).collect(),

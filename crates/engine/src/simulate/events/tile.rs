@@ -61,6 +61,8 @@ pub(super) struct SegmentTile<'s> {
     alone: Vec<Alone<'s>>,
     /// When a lane first meets an event that its word does not have, or an instant cannot be solved for, s.
     pub deviates: Option<f64>,
+    /// Lanes of which an instant cannot be solved for.
+    pub lost: Vec<bool>,
     /// Indices of the samples: those of the first lanes.
     pub samples: Vec<usize>,
 }
@@ -123,6 +125,7 @@ impl<'s> SegmentTile<'s> {
             recorded,
             alone,
             deviates,
+            lost: vec![false; width],
             samples: indices,
         })
     }
@@ -130,6 +133,11 @@ impl<'s> SegmentTile<'s> {
     /// Number of lanes.
     pub fn width(&self) -> usize {
         self.motion.length.len()
+    }
+
+    /// Lanes of samples whose instants are all solved for.
+    pub fn kept(&self) -> impl Iterator<Item = usize> {
+        (0..self.samples.len()).filter(|&lane| !self.lost[lane])
     }
 
     /// Number of positions and velocities, 2n.
@@ -208,14 +216,17 @@ impl<'s> SegmentTile<'s> {
             nodes = self.pass(steps);
         }
         if let Some(event) = event {
-            let is_off = |lane: &usize| {
-                let [value, rate] = self.watch.at_end(event.switch, *lane);
+            // Where an event is hardly more than grazed, another one of its switch is beside it.
+            let is_off = |lane: usize| {
+                let [value, rate] = self.watch.at_end(event.switch, lane);
                 let off = (value / rate).abs();
-                off > TUNING.rounded_instant * self.duration || off.is_nan()
+                let is_it = (if event.rises { rate > 0.0 } else { rate < 0.0 }) && self.motion.length[lane] > 0.0;
+                off > TUNING.rounded_instant * self.duration || off.is_nan() || !is_it
             };
-            if let Some(lane) = (0..self.samples.len()).find(is_off) {
+            for lane in (0..self.samples.len()).filter(|&lane| is_off(lane)).collect::<Vec<_>>() {
                 let time = self.motion.begin[lane];
                 self.deviates = Some(self.deviates.map_or(time, |first| first.min(time)));
+                self.lost[lane] = true;
             }
         }
         let (begin, length) = (self.motion.begin.clone(), self.motion.length.clone());

@@ -66,9 +66,8 @@ tuning! {
         /// Most events of a motion with a contact whose normal turns, where it may meet others instead: a pin that
         /// rattles meets them by the hundred.
         most_turning_events: usize = 16, moves "which motions are cut at events";
-        /// Parameters, at most, of boxes with several words: each word costs a surrogate, and ranges of many
-        /// parameters take long.
-        most_of_parts: usize = 2, moves "which motions are cut at events";
+        /// Parameters, at most, of boxes with several words: ranges of more, of which each word has one, take long.
+        most_of_parts: usize = 4, moves "which motions are cut at events";
         /// Motions are cut if their words can be followed for at least this share of the duration: a polynomial that
         /// is not cut there ends at the first event.
         worthwhile_share: f64 = 0.25, moves "which motions are cut at events";

@@ -5,13 +5,14 @@
 //! programme in a trust region that is as narrow across these surfaces as it has to be: the steepest way that leaves
 //! neither the box nor the segment. Then it is moved to the surface that it was to reach.
 
-use super::ends::{Ends, Rival};
+use super::ends::Ends;
+use super::held::{Corner, Looked};
 use super::is_corner;
 use super::row::SegmentRow;
 use super::seeds::Lattice;
 use super::surrogate::Point;
 use super::tuning::TUNING;
-use crate::numerics::{Extent, Range, largest};
+use crate::numerics::{Extent, Range};
 
 /// A place on the way to an extreme.
 struct Climb {
@@ -39,13 +40,6 @@ struct Move {
     share: f64,
     slopes: Vec<f64>,
     of_margins: Vec<Vec<f64>>,
-}
-
-/// Where the search begins: places in their segments, and the outputs there (output, place).
-#[derive(Default)]
-struct Seeds {
-    places: Vec<(usize, Point)>,
-    values: Vec<f64>,
 }
 
 /// The outputs' ranges, with the places of their ends and their errors.
@@ -80,9 +74,14 @@ pub(super) fn ends(row: &SegmentRow, lattice: &Lattice) -> Vec<Ends> {
     let count = 2 * row.outputs;
     let errors = |output: usize| [0, 1].map(|end| errors[output * count + 2 * output + end]);
     let has_corners = of_outputs.iter().flatten().flatten().any(|climb| is_corner(&climb.point.xi));
-    let of_seeds = if has_corners { row.errors(&seeds.places) } else { Vec::new() };
+    let ends = || climbs.iter().filter(|climb| !is_corner(&climb.point.xi)).map(|own| (own.segment, own.point.clone()));
+    let looked = has_corners.then(|| Looked::at(row, seeds.into_iter().chain(ends()).collect()));
     let is_held = |climb: Option<&Climb>, error: f64| {
-        climb.is_some_and(|climb| is_corner(&climb.point.xi) && is_held(row, &seeds, &of_seeds, climb, error))
+        let (Some(looked), Some(climb)) = (&looked, climb.filter(|climb| is_corner(&climb.point.xi))) else {
+            return false;
+        };
+        let Climb { output, sign, segment, value, .. } = *climb;
+        looked.are_within(row, &Corner { output, sign, segment, value, error, point: &climb.point })
     };
     let all = extents.into_iter().zip(&of_outputs).enumerate();
     all.map(|(output, (extent, found))| {
@@ -92,54 +91,12 @@ pub(super) fn ends(row: &SegmentRow, lattice: &Lattice) -> Vec<Ends> {
     .collect()
 }
 
-/// Whether all other places are within a corner, however the polynomials err: those that were looked at, and those
-/// beside it.
-fn is_held(row: &SegmentRow, seeds: &Seeds, of_seeds: &[f64], climb: &Climb, error: f64) -> bool {
-    let Some(slope) = row.piece.slope_of_errors() else { return false };
-    // Where an event passes through the part, outputs change within less than the seeds are apart.
-    if seeds.places.iter().any(|(segment, _)| *segment != climb.segment) {
-        return false;
-    }
-    let count = seeds.places.len();
-    let corner = &climb.point.xi;
-    let of_seed = |(index, (_, point)): (usize, &(usize, Point))| {
-        let at = climb.output * count + index;
-        let distance = largest(point.xi.iter().zip(corner).map(|(a, b)| a - b));
-        Rival { within: climb.sign * (climb.value - seeds.values[at]), error: of_seeds[at], change: slope * distance }
-    };
-    let beside = |axis: usize| {
-        let mut xi = corner.clone();
-        xi[axis] -= TUNING.beside_corner * xi[axis].signum();
-        xi
-    };
-    let beside = row.piece.surrogate.points((0..corner.len()).map(beside).collect());
-    let at: Vec<(&Point, usize, f64)> = beside.iter().map(|point| (point, climb.segment, row.time)).collect();
-    let values = row.outputs_on(&at);
-    let of_axis = |axis: usize| {
-        let within = climb.sign * (climb.value - values[climb.output * at.len() + axis]);
-        Rival { within, error, change: slope * TUNING.beside_corner }
-    };
-    seeds
-        .places
-        .iter()
-        .enumerate()
-        .map(of_seed)
-        .chain((0..corner.len()).map(of_axis))
-        .all(|rival| rival.stays_within(error))
-}
-
-/// Climbs from the best of all places that are looked at.
-fn begun(row: &SegmentRow, lattice: &Lattice) -> (Seeds, Vec<Climb>) {
+/// Places that are looked at, each in its segment, and climbs from the best of them.
+fn begun(row: &SegmentRow, lattice: &Lattice) -> (Vec<(usize, Point)>, Vec<Climb>) {
     let time = row.time;
     let surrogate = &row.piece.surrogate;
     let mut seeds: Vec<(usize, Point)> =
-        lattice.points.iter().map(|point| (point.segment(time), point.clone())).collect();
-    for end in 0..surrogate.ends.len() {
-        // A little inside.
-        let found =
-            lattice.at_zeros(surrogate, |point| point.margins[end] - TUNING.on_end * surrogate.ends[end].error());
-        seeds.extend(found.into_iter().map(|point| (point.segment(time), point)));
-    }
+        lattice.looked_at().map(|point| (point.segment(time), point.clone())).collect();
     for segment in 0..surrogate.segments() {
         for share in [0.0, 0.5, 1.0] {
             // The start and the end of the motion are no surfaces.
@@ -156,7 +113,7 @@ fn begun(row: &SegmentRow, lattice: &Lattice) -> (Seeds, Vec<Climb>) {
     let is_inside = |point: &Point| point.is_inside() || row.piece.samples.contains(&point.xi);
     seeds.retain(|(segment, point)| is_in_segment(*segment, point) && is_inside(point));
     if seeds.is_empty() {
-        return (Seeds::default(), Vec::new());
+        return (Vec::new(), Vec::new());
     }
     let at: Vec<(&Point, usize, f64)> = seeds.iter().map(|(segment, point)| (point, *segment, time)).collect();
     let values = row.outputs_on(&at);
@@ -191,7 +148,7 @@ fn begun(row: &SegmentRow, lattice: &Lattice) -> (Seeds, Vec<Climb>) {
             }));
         }
     }
-    (Seeds { places: seeds, values }, climbs)
+    (seeds, climbs)
 }
 
 /// Moves all climbs that have not ended; whether there are any.

@@ -55,6 +55,10 @@ impl Fitting<'_> {
                     return Ok(None);
                 }
             }
+            let beside = if layer == 0 && covered == 0 { self.grazing(&parts) } else { Vec::new() };
+            if !beside.is_empty() && !self.add(ensemble, beside)? {
+                return Ok(None);
+            }
             let levels = self.samples.levels();
             let (mut found, mut next, mut wanted) = (Vec::new(), Vec::new(), Vec::new());
             for part in &parts {

@@ -12,13 +12,15 @@
 //! - `of_part`: a number that motions have in a part of the box only;
 //! - `row`: the outputs at a time, and how far the polynomials' errors move them;
 //! - `seeds`: where a range is searched for, and `climb`: the search within the part of the box that is in a segment,
-//!   and on its surfaces; `ends`: the ends that it finds.
+//!   and on its surfaces; `ends`: the ends that it finds;
+//! - `held`: which of these are a corner's, however the polynomials err.
 
 mod basis;
 mod climb;
 mod ends;
 mod fitting;
 mod growth;
+mod held;
 mod kept;
 mod of_part;
 mod parts;

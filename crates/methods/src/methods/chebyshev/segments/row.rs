@@ -2,7 +2,7 @@
 
 use super::piece::Piece;
 use super::pieces::Pieces;
-use super::surrogate::Point;
+use super::surrogate::{Point, SegmentErrors};
 use super::tuning::TUNING;
 use crate::methods::chebyshev::sensitivity::Predicted;
 use crate::methods::closure::Closure;
@@ -67,12 +67,15 @@ impl SegmentRow<'_> {
         self.closure.outputs(self.time, count, parameters, motion)
     }
 
-    /// How far the polynomials' errors move outputs at points (output, point), each in the segment in which its value was
-    /// taken: there an event that is near may have been already, or not yet, each line may be off by its own error, and a
-    /// surface beside it by its.
+    /// How far the polynomials' errors move outputs at points (output, point), which are ends of a range, each in the segment
+    /// in which its value was taken: there an event that is near may have been already, or not yet, each line may be off
+    /// by its own error, and a surface beside it by its.
+    ///
+    /// Lines have errors at times and at shares of their segment. Either is enough: within a contact, where a late
+    /// instant makes a line late, an end at some share is found at that share beside it.
     pub fn errors(&self, places: &[(usize, Point)]) -> Vec<f64> {
         let surrogate = &self.piece.surrogate;
-        let (count, n) = (places.len(), surrogate.lines() / 2);
+        let count = places.len();
         let at = |shift: f64| {
             let shifted = |(segment, point): &(usize, Point)| {
                 let times = &self.piece.errors_at(point).times;
@@ -82,37 +85,105 @@ impl SegmentRow<'_> {
         };
         let own: Vec<_> = places.iter().map(|(segment, point)| (point, *segment, self.time)).collect();
         let here = self.outputs_on(&own);
-        let mut moved: Vec<Vec<f64>> = vec![vec![0.0; count]; self.outputs];
-        let mut add = |ways: [Vec<f64>; 2]| {
-            for (output, moved) in moved.iter_mut().enumerate() {
-                for (index, moved) in moved.iter_mut().enumerate() {
-                    let value = |way: &Vec<f64>| way[output * count + index] - here[output * count + index];
-                    *moved += largest(ways.iter().map(value));
-                }
-            }
+        let of = |ways: [Vec<f64>; 2]| -> Vec<f64> {
+            let value = |index: usize| largest(ways.iter().map(|way| way[index] - here[index]));
+            (0..here.len()).map(value).collect()
         };
-        add([-1.0, 1.0].map(|shift| self.outputs_on(&at(shift))));
+        let mut moved = of([-1.0, 1.0].map(|shift| self.outputs_on(&at(shift))));
+        let add = |moved: &mut Vec<f64>, by: &[f64]| moved.iter_mut().zip(by).for_each(|(own, by)| *own += by);
+        add(&mut moved, &self.of_lines(places, &here, SegmentErrors::of_line));
+        let mut at_shares = self.along(places, &here);
+        add(&mut at_shares, &self.of_lines(places, &here, SegmentErrors::of_share));
+        // Errors that are unknown at times stay so.
+        moved.iter_mut().zip(at_shares).filter(|(own, other)| other < *own).for_each(|(own, other)| *own = other);
+        for end in 0..surrogate.ends.len() {
+            add(&mut moved, &of([-1.0, 1.0].map(|sign| self.outputs_at(&self.beside(places, end, sign)))));
+        }
+        // Outside of the samples of a fit errors are larger.
+        let far: Vec<f64> = places.iter().map(|(_, point)| surrogate.leverage(&point.xi).max(1.0).sqrt()).collect();
+        moved
+            .chunks_exact(count.max(1))
+            .flat_map(|moved| moved.iter().zip(&far).map(|(moved, far)| far * moved))
+            .collect()
+    }
+
+    /// How far outputs at points move, from their values there, where each line is off by its error in a step of a
+    /// segment.
+    fn of_lines(
+        &self,
+        places: &[(usize, Point)],
+        here: &[f64],
+        error: fn(&SegmentErrors, usize, usize, usize) -> f64,
+    ) -> Vec<f64> {
+        let surrogate = &self.piece.surrogate;
+        let (count, n) = (places.len(), surrogate.lines() / 2);
+        let mut moved = vec![0.0; here.len()];
         for line in self.closure.independent().iter().flat_map(|&coordinate| [coordinate, n + coordinate]) {
-            add([-1.0, 1.0].map(|sign| {
+            let ways = [-1.0, 1.0].map(|sign| {
                 let mut motion = vec![0.0; 2 * n * count];
-                for (index, (segment, point)) in places.iter().enumerate() {
-                    let step = surrogate.step(point, *segment, self.time);
-                    let error = self.piece.errors_at(point).of_line(*segment, step, line);
-                    for (number, value) in surrogate.motion(point, *segment, self.time).enumerate() {
+                for (index, &(segment, ref point)) in places.iter().enumerate() {
+                    let step = surrogate.step(point, segment, self.time);
+                    let error = error(self.piece.errors_at(point), segment, step, line);
+                    for (number, value) in surrogate.motion(point, segment, self.time).enumerate() {
                         let by = if number == line { sign * error } else { 0.0 };
                         motion[number * count + index] = value + by;
                     }
                 }
                 self.closed(places.iter().map(|(_, point)| point.xi.as_slice()), count, motion)
-            }));
+            });
+            for (index, moved) in moved.iter_mut().enumerate() {
+                *moved += largest(ways.iter().map(|way| way[index] - here[index]));
+            }
         }
-        for end in 0..surrogate.ends.len() {
-            add([-1.0, 1.0].map(|sign| self.outputs_at(&self.beside(places, end, sign))));
-        }
-        // Outside of the samples of a fit errors are larger.
-        let far = |(_, point): &(usize, Point)| surrogate.leverage(&point.xi).max(1.0).sqrt();
-        let far: Vec<f64> = places.iter().map(far).collect();
-        moved.iter().flat_map(|moved| moved.iter().zip(&far).map(|(moved, far)| far * moved)).collect()
+        moved
+    }
+
+    /// How far outputs at points (output, point) differ from those at the same share of the segment, as far beside as
+    /// the errors of its instants move that share; unknown where the box ends before.
+    fn along(&self, places: &[(usize, Point)], here: &[f64]) -> Vec<f64> {
+        let surrogate = &self.piece.surrogate;
+        let count = places.len();
+        let at_share = |point: &Point, (segment, share): (usize, f64)| {
+            let [begin, end] = [point.times[segment], point.times[segment + 1]];
+            begin + share * (end - begin)
+        };
+        let share = |&(segment, ref point): &(usize, Point)| (segment, surrogate.share(point, segment, self.time).0);
+        let shares: Vec<(usize, f64)> = places.iter().map(share).collect();
+        let k = self.domain.dimension();
+        let moved = |point: &Point, axis: usize| {
+            let mut xi = point.xi.clone();
+            xi[axis] += TUNING.step_of_surfaces;
+            xi
+        };
+        let around = places.iter().flat_map(|(_, point)| (0..k).map(move |axis| moved(point, axis)));
+        let around = surrogate.points(around.collect());
+        let way = |index: usize| -> Vec<f64> {
+            let (point, own) = (&places[index].1, shares[index]);
+            let errors = &self.piece.errors_at(point).times;
+            // Not out of the box.
+            let is_free = |xi: f64| xi.abs() < 1.0 - TUNING.step_of_surfaces;
+            let slope = |axis: usize| {
+                let later = at_share(&around[index * k + axis], own) - self.time;
+                if is_free(point.xi[axis]) { later / TUNING.step_of_surfaces } else { 0.0 }
+            };
+            let slopes: Vec<f64> = (0..k).map(slope).collect();
+            let square: f64 = slopes.iter().map(|slope| slope * slope).sum();
+            let by = errors[own.0].max(errors[own.0 + 1]) / square;
+            slopes.iter().map(|slope| by * slope).collect()
+        };
+        let ways: Vec<Vec<f64>> = (0..count).map(way).collect();
+        let beside = |sign: f64| -> Vec<f64> {
+            let xi = places.iter().zip(&ways);
+            let xi = xi.map(|((_, point), way)| point.xi.iter().zip(way).map(|(xi, by)| xi + sign * by).collect());
+            let others = surrogate.points(xi.collect());
+            let at: Vec<(&Point, usize, f64)> =
+                others.iter().zip(&shares).map(|(point, &own)| (point, own.0, at_share(point, own))).collect();
+            let is_within = |index: usize| others[index % count].xi.iter().all(|xi| xi.abs() <= 1.0);
+            let values = self.outputs_on(&at).into_iter().enumerate();
+            values.map(|(index, value)| if is_within(index) { value } else { f64::NAN }).collect()
+        };
+        let both = [beside(-1.0), beside(1.0)];
+        (0..here.len()).map(|index| largest(both.iter().map(|values| values[index] - here[index]))).collect()
     }
 
     /// Points that are beside a surface, moved across it as far as its error is.
@@ -177,41 +248,5 @@ impl Predicted for SensedRow<'_> {
 
     fn predict_some(&self, outputs: &[usize], points: &[Vec<f64>]) -> Vec<f64> {
         self.row.some_outputs(outputs, points)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::super::basis::Basis;
-    use super::super::climb;
-    use super::super::of_part::Number;
-    use super::super::seeds::Lattice;
-    use super::super::surrogate::{SegmentErrors, SegmentSurrogate};
-    use super::*;
-    use crate::numerics::{STEP_NODES, SegmentMotions, SurrogateWork};
-
-    /// Polynomials have a ball leave a post before it meets it: −6 behind it is no more known there than 0 before it.
-    #[test]
-    fn an_end_in_another_segment_than_its_place_has_the_difference_for_error() {
-        let grid = Surrogate::tensor(&[1], &[2]);
-        let of_xi = |at: &dyn Fn(f64) -> f64| grid.samples().iter().map(|xi| at(xi[0])).collect::<Vec<f64>>();
-        let node = |value: f64| [of_xi(&|_| value), of_xi(&|_| 0.0)].concat();
-        let motions = SegmentMotions {
-            samples: vec![0, 1],
-            steps: vec![vec![1.0]; 3],
-            times: vec![of_xi(&|_| 0.0), of_xi(&|xi| 0.5 + 0.3 * xi), of_xi(&|xi| 0.6 - 0.3 * xi), of_xi(&|_| 1.0)],
-            nodes: [0.0, 0.0, -6.0].map(|value| vec![node(value); STEP_NODES]).to_vec(),
-        };
-        let mut work = SurrogateWork::default();
-        let coefficients = |values: &[f64]| grid.coefficients(values, &mut work);
-        let surrogate = SegmentSurrogate::new(Basis::Grid(grid.basis().clone()), Vec::new(), &motions, coefficients);
-        let errors = SegmentErrors { times: vec![1e-3; 4], lines: vec![vec![vec![1e-9; 2]]; 3] };
-        let piece = Piece::new(surrogate, errors, Vec::new());
-        let domain =
-            ParameterBox { nominal: vec![0.0].into(), lower: vec![-1.0], upper: vec![1.0], ..ParameterBox::default() };
-        let row = SegmentRow { domain: &domain, outputs: 1, piece: &piece, closure: &Number, time: 0.4 };
-        let [ends] = &climb::ends(&row, &Lattice::new(&piece.surrogate, &[], 1))[..] else { panic!() };
-        let (lower, error) = (ends.extent.range.lower, ends.errors[0]);
-        assert!((lower + 6.0).abs() < 1e-9 && error >= 6.0 - 1e-9, "{lower} ± {error}");
     }
 }

@@ -1,7 +1,7 @@
 //! Samples that fits in the parts of a box need: enough of them, some beside surfaces, and none far outside of the
 //! others.
 
-use super::basis::Fitted;
+use super::basis::{End, Fitted};
 use super::fitting::Fitting;
 use super::parts::WordPart;
 use super::piece::Piece;
@@ -44,6 +44,36 @@ impl Fitting<'_> {
             found.push(xi);
         }
         found
+    }
+
+    /// Points just behind surfaces on which an event is grazed: a contact that is entered slowly ends otherwise than a
+    /// faster one, and polynomials through samples that are farther behind tell the faster one's end.
+    pub(super) fn grazing(&self, parts: &[WordPart]) -> Vec<Vec<f64>> {
+        let levels = self.samples.levels();
+        let xi = &self.samples.xi;
+        let k = xi.first().map_or(0, Vec::len);
+        // Of one parameter the surface is a point: copies of a sample would hide its error.
+        let count = 1 + TUNING.grazing_samples * k.saturating_sub(1);
+        let of_part = |part: &WordPart| {
+            let ends = part.ends(&levels);
+            let words = &self.samples.motions.words;
+            let own: Vec<&Vec<f64>> = words[part.word].samples.iter().map(|&own| &xi[own]).collect();
+            let of_end = |end: &End| {
+                let margin = |point: &Vec<f64>| end.margin(point);
+                let depth = own.iter().map(|point| margin(point)).fold(0.0, f64::max);
+                let others: Vec<&Vec<f64>> = xi.iter().filter(|point| margin(point) < 0.0).collect();
+                // The last of them as near as the surface is known.
+                let nearest = TUNING.beyond_error * end.error();
+                let shares = TUNING.grazing_shares.map(|share| share * depth);
+                let far = shares.iter().filter(|at| **at > nearest).count();
+                let depths = shares.into_iter().take(far + 1).map(|at| at.max(nearest));
+                depths.flat_map(|at| across(&own, &others, count, margin, |_| at)).collect::<Vec<_>>()
+            };
+            let mut found: Vec<Vec<f64>> = ends.iter().filter(|end| end.sign < 0.0).flat_map(of_end).collect();
+            found.retain(|point| ends.iter().all(|end| end.margin(point) >= 0.0));
+            found
+        };
+        parts.iter().flat_map(of_part).collect()
     }
 
     /// Points at which samples are missing.

@@ -1,13 +1,16 @@
 //! Where a range is searched for: a lattice of the box, and points where it meets the surfaces on which an event is at
 //! the row's time.
 
+use super::basis::End;
 use super::surrogate::{Point, SegmentSurrogate};
 use super::tuning::TUNING;
 use crate::numerics::{corners, spread};
 
 /// Points of the box, and which of them are joined by edges.
 pub(super) struct Lattice {
-    pub points: Vec<Point>,
+    points: Vec<Point>,
+    /// How many of the points, the first, are where edges meet the surfaces that end the part.
+    on_ends: usize,
     edges: Vec<(usize, usize)>,
 }
 
@@ -18,7 +21,7 @@ impl Lattice {
             let xi = [&corners(k, TUNING.corners_of_lattice)[..], &spread(k, TUNING.spread_a_parameter * k), others]
                 .concat();
             let edges = (1..xi.len()).flat_map(|end| [(end - 1, end), (end / 2, end)]).collect();
-            return Self { points: surrogate.points(xi), edges };
+            return Self { points: surrogate.points(xi), on_ends: 0, edges }.within(surrogate);
         };
         let count = (intervals + 1).pow(k as u32);
         let stride = |axis: usize| (intervals + 1).pow(axis as u32);
@@ -30,20 +33,47 @@ impl Lattice {
             let inner = (0..k).filter(move |&axis| place(index, axis) < intervals);
             inner.map(move |axis| (index, index + stride(axis)))
         });
-        Self { points: surrogate.points(xi.chain(others.iter().cloned()).collect()), edges: edges.collect() }
+        let points = surrogate.points(xi.chain(others.iter().cloned()).collect());
+        Self { points, on_ends: 0, edges: edges.collect() }.within(surrogate)
+    }
+
+    /// The lattice inside of the surfaces that end the part, where there are any: outside of them its polynomials say
+    /// nothing of where an event is. A part may be thinner than the lattice's edges are long.
+    fn within(self, surrogate: &SegmentSurrogate) -> Self {
+        if surrogate.ends.is_empty() {
+            return self;
+        }
+        let mut xi: Vec<Vec<f64>> = Vec::new();
+        let mut edges = Vec::new();
+        for &(a, b) in &self.edges {
+            let [from, to] = [a, b].map(|index| &self.points[index].xi);
+            let at = |share: f64| -> Vec<f64> { from.iter().zip(to).map(|(a, b)| a + share * (b - a)).collect() };
+            for [first, last] in inside_shares(&surrogate.ends, at) {
+                edges.push((xi.len(), xi.len() + 1));
+                xi.extend([at(first), at(last)]);
+            }
+        }
+        let on_ends = xi.len();
+        let mut points: Vec<Point> = surrogate.points(xi);
+        points.extend(self.points.into_iter().filter(Point::is_inside));
+        Self { points, on_ends, edges }
+    }
+
+    /// Points at which a search begins.
+    pub fn looked_at(&self) -> impl Iterator<Item = &Point> {
+        let (on_ends, others) = self.points.split_at(self.on_ends);
+        // Either end of an edge in turn.
+        let every = on_ends.len().div_ceil(TUNING.most_on_surface) | 1;
+        on_ends.iter().step_by(every).chain(others)
     }
 
     /// Points at which the box is at a share of a segment at a time, where edges meet that surface.
     pub fn on_surface(&self, surrogate: &SegmentSurrogate, segment: usize, share: f64, time: f64) -> Vec<Point> {
-        self.at_zeros(surrogate, |point| {
+        let distance = |point: &Point| {
             let [begin, end] = [point.times[segment], point.times[segment + 1]];
             begin + share * (end - begin) - time
-        })
-    }
-
-    /// Points where edges meet the zeros of a distance.
-    pub fn at_zeros(&self, surrogate: &SegmentSurrogate, distance: impl Fn(&Point) -> f64) -> Vec<Point> {
-        let distances: Vec<f64> = self.points.iter().map(&distance).collect();
+        };
+        let distances: Vec<f64> = self.points.iter().map(distance).collect();
         let crossed: Vec<(usize, usize)> =
             self.edges.iter().copied().filter(|&(a, b)| distances[a] * distances[b] < 0.0).collect();
         let every = crossed.len().div_ceil(TUNING.most_on_surface).max(1);
@@ -68,5 +98,68 @@ impl Lattice {
             }
         }
         found
+    }
+}
+
+/// Shares of a line, which gives the place at each, between which it is inside of all surfaces that end a part.
+fn inside_shares(all: &[End], at: impl Fn(f64) -> Vec<f64>) -> Vec<[f64; 2]> {
+    // A little inside.
+    let margins = |share: f64| -> Vec<f64> {
+        let xi = at(share);
+        all.iter().map(|end| end.margin(&xi) - TUNING.on_end * end.error()).collect()
+    };
+    let is_inside = |margins: &[f64]| margins.iter().all(|margin| *margin >= 0.0);
+    let count = TUNING.points_of_edge;
+    let shares: Vec<f64> = (0..=count).map(|index| index as f64 / count as f64).collect();
+    let of_shares: Vec<Vec<f64>> = shares.iter().map(|&share| margins(share)).collect();
+    let mut found: Vec<[f64; 2]> = Vec::new();
+    for (ends, of_ends) in shares.windows(2).zip(of_shares.windows(2)) {
+        let crosses = |end: &usize| (of_ends[0][*end] >= 0.0) != (of_ends[1][*end] >= 0.0);
+        // Each as the last places on its inside.
+        let crossing = |end: usize| {
+            let (mut inside, mut outside) = (ends[0], ends[1]);
+            if of_ends[0][end] < 0.0 {
+                (inside, outside) = (outside, inside);
+            }
+            for _ in 0..TUNING.halvings_of_line {
+                let middle = 0.5 * (inside + outside);
+                if margins(middle)[end] >= 0.0 { inside = middle } else { outside = middle }
+            }
+            inside
+        };
+        let mut cuts: Vec<f64> = (0..all.len()).filter(crosses).map(crossing).collect();
+        cuts.extend([ends[0], ends[1]]);
+        cuts.sort_by(f64::total_cmp);
+        for cut in cuts.windows(2) {
+            if !is_inside(&margins(0.5 * (cut[0] + cut[1]))) || cut[0] == cut[1] {
+                continue;
+            }
+            // Parts that meet are one.
+            match found.last_mut() {
+                Some(last) if last[1] == cut[0] => last[1] = cut[1],
+                _ => found.push([cut[0], cut[1]]),
+            }
+        }
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The line from (−1, −1) to (1, 1) is within 0.3 < x < 0.31 between the shares 0.65 and 0.655 only, and with
+    /// y < 0.305, too, up to 0.6525.
+    #[test]
+    fn parts_thinner_than_an_edge_are_found() {
+        let at = |share: f64| vec![2.0 * share - 1.0; 2];
+        let mut ends = vec![End::across(0, 0.3, 1.0, 2), End::across(0, 0.31, -1.0, 2)];
+        let of = |ends: &[End]| inside_shares(ends, at);
+        let [[first, last]] = of(&ends)[..] else { panic!("{:?}", of(&ends)) };
+        assert!((first - 0.65).abs() < 1e-9 && (last - 0.655).abs() < 1e-9, "{first} {last}");
+        ends.push(End::across(1, 0.305, -1.0, 2));
+        let [[_, last]] = of(&ends)[..] else { panic!("{:?}", of(&ends)) };
+        assert!((last - 0.6525).abs() < 1e-9, "{last}");
+        assert_eq!(of(&ends[..1]).len(), 1);
     }
 }

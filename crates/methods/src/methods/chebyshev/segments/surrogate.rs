@@ -50,6 +50,8 @@ pub(super) struct SegmentErrors {
     pub times: Vec<f64>,
     /// Of each line at a time, by segment and step.
     pub lines: Vec<Vec<Vec<f64>>>,
+    /// Of each line at a share of its segment, by segment and step.
+    pub shares: Vec<Vec<Vec<f64>>>,
 }
 
 /// Shares between which the branch of a segment is known: it goes on beyond its ends by a part of the segment, and of
@@ -71,6 +73,11 @@ fn share_of_node(steps: &[f64], node: usize) -> f64 {
     let step = (node / (STEP_NODES - 1)).min(steps.len() - 1);
     let begin = if step == 0 { 0.0 } else { steps[step - 1] };
     begin + (steps[step] - begin) * step_nodes()[node - step * (STEP_NODES - 1)]
+}
+
+/// Largest error of a line in a step and beside it.
+fn beside_step(steps: &[Vec<f64>], step: usize, line: usize) -> f64 {
+    largest(steps.iter().take(step + 2).skip(step.saturating_sub(1)).map(|errors| errors[line]))
 }
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {
@@ -202,6 +209,13 @@ impl SegmentSurrogate {
         })
     }
 
+    /// The share of a segment that a point is at at a time, and the length of the step there.
+    pub fn share(&self, point: &Point, segment: usize, time: f64) -> (f64, f64) {
+        let [begin, end] = [point.times[segment], point.times[segment + 1]];
+        let (steps, step) = (&self.steps[segment], self.step(point, segment, time));
+        ((time - begin) / (end - begin), steps[step] - step.checked_sub(1).map_or(0.0, |before| steps[before]))
+    }
+
     /// The step of a segment in which a point is at a time.
     pub fn step(&self, point: &Point, segment: usize, time: f64) -> usize {
         self.weights(point, segment, time).0
@@ -259,8 +273,8 @@ impl SegmentErrors {
             steps.map(|step| of_step(&nodes[step * (STEP_NODES - 1)..][..STEP_NODES])).collect()
         };
         let times = surrogate.times.iter().map(|time| truncation(time)).collect();
-        let lines = surrogate.nodes.iter().map(of_segment).collect();
-        Self::between(direct, &predicted).or(&Self { times, lines })
+        let lines: Vec<Vec<Vec<f64>>> = surrogate.nodes.iter().map(of_segment).collect();
+        Self::between(direct, &predicted).or(&Self { times, shares: lines.clone(), lines })
     }
 
     /// Of motions that are predicted. Lines are compared at the times of the direct nodes: where an instant is late,
@@ -274,10 +288,19 @@ impl SegmentErrors {
             let steps = &direct.steps[segment];
             let lines = direct.nodes[segment].first().map_or(0, |node| node.len() / count.max(1));
             let mut errors = vec![vec![0.0; lines]; steps.len()];
+            let mut of_shares = errors.clone();
             for (node, values) in direct.nodes[segment].iter().enumerate() {
                 let share = share_of_node(steps, node);
                 // A node between two steps is of both.
                 let of_steps = node.saturating_sub(1) / (STEP_NODES - 1)..=node / (STEP_NODES - 1);
+                let at_share = &predicted.nodes[segment][node];
+                for of_step in of_shares.iter_mut().take(of_steps.end() + 1).skip(*of_steps.start()) {
+                    for (line, error) in of_step.iter_mut().enumerate() {
+                        let samples = line * count..(line + 1) * count;
+                        let differences = at_share[samples.clone()].iter().zip(&values[samples]).map(|(a, b)| a - b);
+                        *error = largest(differences.chain([*error]));
+                    }
+                }
                 for sample in 0..count {
                     let ends = |times: &[Vec<f64>]| [segment, segment + 1].map(|number| times[number][sample]);
                     let ([begin, end], [from, to]) = (ends(&direct.times), ends(&predicted.times));
@@ -297,9 +320,10 @@ impl SegmentErrors {
                     }
                 }
             }
-            errors
+            (errors, of_shares)
         };
-        Self { times, lines: (0..direct.nodes.len()).map(of_segment).collect() }
+        let (lines, shares) = (0..direct.nodes.len()).map(of_segment).unzip();
+        Self { times, lines, shares }
     }
 
     /// The larger of both.
@@ -309,15 +333,17 @@ impl SegmentErrors {
             own.iter_mut().zip(other).for_each(|(own, other)| *own = largest([*own, *other]));
         };
         raise(&mut self.times, &other.times);
-        let steps = self.lines.iter_mut().zip(&other.lines).flat_map(|(own, other)| own.iter_mut().zip(other));
-        steps.for_each(|(own, other)| raise(own, other));
+        for (own, other) in [(&mut self.lines, &other.lines), (&mut self.shares, &other.shares)] {
+            let steps = own.iter_mut().zip(other).flat_map(|(own, other)| own.iter_mut().zip(other));
+            steps.for_each(|(own, other)| raise(own, other));
+        }
         self
     }
 
     /// The largest of all steps of each segment behind an event, in each of them.
     #[must_use]
     pub fn of_segments_behind_events(mut self) -> Self {
-        for steps in self.lines.iter_mut().skip(1) {
+        for steps in self.lines.iter_mut().skip(1).chain(self.shares.iter_mut().skip(1)) {
             let most = |line: usize| largest(steps.iter().map(|errors| errors[line]));
             let all: Vec<f64> = (0..steps.first().map_or(0, Vec::len)).map(most).collect();
             steps.iter_mut().for_each(|errors| errors.clone_from(&all));
@@ -327,6 +353,11 @@ impl SegmentErrors {
 
     /// Of a line in a step of a segment and beside it.
     pub fn of_line(&self, segment: usize, step: usize, line: usize) -> f64 {
-        largest(self.lines[segment].iter().take(step + 2).skip(step.saturating_sub(1)).map(|errors| errors[line]))
+        beside_step(&self.lines[segment], step, line)
+    }
+
+    /// The same at a share of the segment.
+    pub fn of_share(&self, segment: usize, step: usize, line: usize) -> f64 {
+        beside_step(&self.shares[segment], step, line)
     }
 }

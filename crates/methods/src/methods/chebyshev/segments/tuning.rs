@@ -39,7 +39,7 @@ tuning! {
         beyond_of_seed: f64 = 1e-6, moves "Chebyshev bounds through events";
         /// A point is moved back inside of a surface by a little more than it is beyond: by this factor.
         moved_back: f64 = 1.001, moves "Chebyshev bounds through events";
-        /// A point on a surface is inside by this share of the surface's error.
+        /// The lattice ends inside of a surface by this share of the surface's error.
         on_end: f64 = 1e-3, moves "Chebyshev bounds through events";
         /// Rounds in which samples are added to parts.
         rounds_of_samples: usize = 2, moves "Chebyshev bounds through events";
@@ -106,6 +106,13 @@ tuning! {
         /// Points beside a surface are inside of it by this share of the depth: a motion that only just grazes cannot
         /// be cut.
         inside_surface: f64 = 1e-6, moves "Chebyshev bounds through events";
+        /// Shares of the depth of a part at which it has samples beside the surface: within less than others are apart,
+        /// motions may differ from those that polynomials tell.
+        grazing_shares: [f64; 3] = [1e-4, 1e-6, 1e-8], moves "Chebyshev bounds through events";
+        /// Further samples at each of these depths for each dimension of the surface.
+        grazing_samples: usize = 8, moves "Chebyshev bounds through events";
+        /// Samples are no nearer to a surface than so many times its error, within which they may be on its other side.
+        beyond_error: f64 = 2.0, moves "Chebyshev bounds through events";
         /// Halvings of a line on which a level is looked for.
         halvings_of_line: usize = 40, moves "Chebyshev bounds through events";
         /// Of the samples that a part lacks on the side of a surface without the event, one in so many is beside it.
@@ -119,11 +126,13 @@ tuning! {
         /// Intervals of the lattice along each axis, by the number of parameters; more have corners and points spread
         /// over the box, each joined to the next.
         intervals: [usize; 4] = [32, 12, 6, 4], moves "Chebyshev bounds through events";
+        /// Intervals of each edge of the lattice in which it is searched for surfaces that end a part.
+        points_of_edge: usize = 8, moves "Chebyshev bounds through events";
         /// Corners of the box from which a range of many parameters is searched.
         corners_of_lattice: usize = 64, moves "Chebyshev bounds through events";
         /// Points for each parameter from which a range of many parameters is searched.
         spread_a_parameter: usize = 32, moves "Chebyshev bounds through events";
-        /// Points on a surface, at most.
+        /// Points on a surface, at most, from which a search begins.
         most_on_surface: usize = 96, moves "Chebyshev bounds through events";
         /// Corrections of a point on a surface along its edge.
         corrections: usize = 5, moves "Chebyshev bounds through events";
