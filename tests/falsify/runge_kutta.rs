@@ -233,7 +233,7 @@ pub fn solve_located<const N: usize, const S: usize>(
     solution
 }
 
-/// How fast switches change at y, by what they differ within so short a time.
+/// Rates of switches at y, from their differences over so short a time.
 fn rates<const N: usize, const S: usize>(
     f: &impl Equation,
     switches: &impl Fn(f64, &[f64]) -> [f64; S],

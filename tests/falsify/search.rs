@@ -12,10 +12,18 @@ const CANDIDATES: usize = 6;
 /// About how many of those more points are drawn where a band seems to be missed.
 const DRAWN_ABOUT: usize = 2;
 
-/// How many points are drawn at once, and up to which distance, in cells: of closed forms, and of motions, which have
-/// two parameters at most.
-const DRAWN: (usize, f64) = (1500, FINEST);
-const DRAWN_MOTIONS: (usize, f64) = (24, 1e-3);
+/// Points about an end.
+#[derive(Clone, Copy)]
+struct Looks {
+    /// Drawn at once.
+    drawn: usize,
+    /// The least distance, in cells.
+    nearest: f64,
+}
+
+/// Of closed forms, and of motions, which have two parameters at most.
+const DRAWN: Looks = Looks { drawn: 1500, nearest: FINEST };
+const DRAWN_MOTIONS: Looks = Looks { drawn: 24, nearest: 1e-3 };
 
 /// Share of their coordinates that are at an end of the parameter's interval.
 const AT_ENDS: f64 = 0.25;
@@ -115,7 +123,7 @@ fn climb(start: &[f64], points: usize, known: f64, f: &dyn Fn(&[f64]) -> f64) ->
 fn narrowed(
     (known, place): &(f64, Vec<f64>),
     points: usize,
-    (drawn, nearest): (usize, f64),
+    Looks { drawn, nearest }: Looks,
     f: &dyn Fn(&[f64]) -> f64,
 ) -> f64 {
     let (mut random, mut best, mut at) = (Random::new(1, 0), *known, place.clone());

@@ -301,7 +301,7 @@ pub enum ConditionOf {
 }
 
 impl System {
-    /// What is in the equations of motion: masses and forces.
+    /// Masses and forces of the equations of motion.
     pub fn of_motion(&self) -> Vec<Expr> {
         let mass = self.mass.iter().map(|&(_, _, value)| value);
         mass.chain(self.inertia.iter().chain(&self.force).copied()).collect()

@@ -17,9 +17,9 @@ use crate::study::formulation::tuning::TUNING;
 
 /// One with another cut than the first, and a shorter step that starts alike, if there is one; `with_roots`, also one
 /// in which bodies behind joints of several axes have coordinates of their own. `assemble` makes the equations of
-/// questions that give the cut. They are not compiled where they are longer than those of the best so far, nor to the end
-/// where that takes many times its operations. Redundant constraints and a singular start depend on the cut, and are
-/// left with the first.
+/// questions that give the cut. They are not compiled where they are longer than those of the best so far, nor to the
+/// end where that takes many times its operations. Redundant constraints and a singular start depend on the cut, and
+/// are left with the first.
 pub fn shortest(
     questions: &Questions,
     first: &Simulator,
@@ -41,7 +41,7 @@ pub fn shortest(
         let current = questions.cut_at(best.system.formulation.cut.clone());
         let roots = if with_roots { assemble::cuts_of_several_axes(&current) } else { Vec::new() };
         let cuts = assemble::other_cuts(&current).into_iter().chain(roots).filter(|cut| !tried.contains(cut));
-        // What follows a shorter one is compiled for nothing, and not counted.
+        // Cuts after a shorter one are compiled for nothing, and not counted.
         let at_once = rayon::current_num_threads().min(TUNING.cuts_at_once);
         for cuts in cuts.collect::<Vec<_>>().chunks(at_once) {
             let others = cuts.par_iter().map(|cut| {

@@ -43,7 +43,7 @@ tuning! {
         /// Tolerance of its steps that are longer than the model's: some fifty a turn.
         tolerance_of_look: f64 = 3e-2, moves "choice of coordinates of loops";
         /// Part that a pivot has lost of the range between its size at the pivot samples (1e-10) and the smallest that
-        /// is trusted (1) from which on no step is longer than the model's: a tenth of what has a step examined.
+        /// is trusted (1) from which on no step is longer than the model's: a tenth of those that have a step examined.
         pivot_of_long_look: f64 = 1e-9, moves "choice of coordinates of loops";
         /// Eliminations of the start.
         eliminations: usize = 3, moves "choice of coordinates of large models";

@@ -21,7 +21,7 @@ pub(super) enum Basis {
 pub(super) struct Powers(Vec<Vec<u8>>);
 
 /// Products up to a degree, and the same up to one less times the root of each depth behind a surface: behind the
-/// surface on which an event is just grazed, instants and what follows go with the root of the distance to it. Powers
+/// surface on which an event is just grazed, instants and motions behind go with the root of the distance to it. Powers
 /// are those of places in a box about the samples: of a layer, which is thin, those of ξ would cancel.
 #[derive(Clone, Debug)]
 pub(super) struct Fitted {
@@ -259,7 +259,7 @@ mod tests {
         assert!((value - f(0.201)).abs() < 1e-8);
     }
 
-    /// Samples of a layer 2e-3 wide: between them a line is what it is at them.
+    /// Samples of a layer 2e-3 wide: between them a line has the values at them.
     #[test]
     fn terms_of_a_layer_do_not_cancel() {
         let line = |x: f64| 1.28 - 0.3 * x;

@@ -67,9 +67,9 @@ impl SegmentRow<'_> {
         self.closure.outputs(self.time, count, parameters, motion)
     }
 
-    /// How far the polynomials' errors move outputs at points (output, point), which are ends of a range, each in the segment
-    /// in which its value was taken: there an event that is near may have been already, or not yet, each line may be off
-    /// by its own error, and a surface beside it by its.
+    /// How far the polynomials' errors move outputs at points (output, point), which are ends of a range, each in the
+    /// segment in which its value was taken: there an event that is near may have been already, or not yet, each line
+    /// may be off by its own error, and a surface beside it by its.
     ///
     /// Lines have errors at times and at shares of their segment. Either is enough: within a contact, where a late
     /// instant makes a line late, an end at some share is found at that share beside it.
