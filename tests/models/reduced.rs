@@ -361,7 +361,12 @@ bounds: { chebyshev: { order: 5 } }
     let Some(&[v, k]) = occurs.absent.as_deref() else { panic!("{occurs:?}") };
     assert!(v / k.sqrt() < 0.2, "it occurs at v = {v}, k = {k}");
     for case in far.worst.as_ref().unwrap() {
-        let expected = when(case.parameters[0], case.parameters[1], 0.2);
+        // Samples beside the surface: steps err by 1.1e-7 m, as `max: ball.x` states there, by which one that just misses
+        // the event has it.
+        let [v, k] = case.parameters[..] else { panic!("{case:?}") };
+        let height = v / k.sqrt();
+        assert!(height > 0.2 - 1.1e-7, "{case:?} reaches {height} m");
+        let expected = when(v, k, height.min(0.2));
         assert!((case.value - expected).abs() < 1e-4, "{case:?} instead of {expected}");
     }
 }

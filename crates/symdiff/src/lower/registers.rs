@@ -34,7 +34,7 @@ pub(crate) fn allocate(steps: &[Step], targets: &[(Expr, u32)], register_of: &No
     };
     let mut copies = Vec::new();
     for &(expr, register) in targets {
-        let is_free = !reads_register[register as usize];
+        let is_free = reads_register.get(register as usize) != Some(&true);
         if computed.contains(expr) && is_free && !registers.place_of.contains(expr) {
             registers.place_of.insert(expr, register);
         } else if register_of.get(expr) != Some(register) {
