@@ -41,26 +41,19 @@ impl Bend {
         product
     }
 
-    /// The point of the box at which slope · d − ½ dᵀB d is largest, d counted from `point`: conjugate gradients on a
-    /// face of the box up to its largest value or to a further side, and sides are left where nothing is gained on the
-    /// face any more (Polyak, The conjugate gradient method in extremal problems, 1969).
+    /// The point of the box at which slope · d − ½ dᵀB d is largest, d counted from `point`: conjugate gradients on the
+    /// faces of the box, one after the other.
     pub fn largest(&self, point: &[f64], slope: &[f64]) -> Vec<f64> {
         let k = point.len();
         let (mut at, mut left) = (point.to_vec(), slope.to_vec());
-        let pushes = |x: f64, by: f64| by * x > 0.0 && x.abs() >= 1.0 - TUNING.rounding_of_product;
-        let pushed = |at: &[f64], by: &[f64]| at.iter().zip(by).map(|(&x, &by)| pushes(x, by)).collect::<Vec<_>>();
-        let mut held = pushed(&at, &left);
+        let pushes = |x: f64, left: f64| left * x > 0.0 && x.abs() >= 1.0 - TUNING.rounding_of_product;
         let mut way: Option<(Vec<f64>, f64)> = None;
         for _ in 0..TUNING.rounds_of_face * k {
-            let free: Vec<f64> = left.iter().zip(&held).map(|(&own, &held)| if held { 0.0 } else { own }).collect();
+            let free: Vec<f64> =
+                at.iter().zip(&left).map(|(&x, &own)| if pushes(x, own) { 0.0 } else { own }).collect();
             let size = dot(&free, &free);
             if size <= TUNING.rounding_of_product * dot(slope, slope) {
-                let outwards = pushed(&at, &left);
-                if outwards == held {
-                    break;
-                }
-                (held, way) = (outwards, None);
-                continue;
+                break;
             }
             let direction: Vec<f64> = match &way {
                 Some((before, known)) => {
@@ -77,12 +70,7 @@ impl Bend {
             at.iter_mut().zip(&direction).for_each(|(x, by)| *x = (*x + step * by).clamp(-1.0, 1.0));
             left.iter_mut().zip(&bent).for_each(|(own, by)| *own -= step * by);
             // Another face begins anew.
-            way = if share < reach {
-                Some((direction, size))
-            } else {
-                held.iter_mut().zip(pushed(&at, &direction)).for_each(|(held, reached)| *held |= reached);
-                None
-            };
+            way = (share < reach).then_some((direction, size));
         }
         at
     }

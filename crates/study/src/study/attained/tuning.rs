@@ -38,7 +38,7 @@ tuning! {
         rounding_of_product: f64 = 1e-12, moves "bounds of models with many parameters";
         /// Rounds of conjugate gradients for each parameter: on a face of the box they are as many as pairs of points
         /// whose curvature counts, and most faces take one.
-        rounds_of_face: usize = 16, moves "bounds of models with many parameters";
+        rounds_of_face: usize = 4, moves "bounds of models with many parameters";
         /// Least error of an end, as a share of the one that is allowed: some climbs prove nothing.
         least_error: f64 = 0.2, moves "errors of attained ends";
     }
