@@ -361,8 +361,8 @@ bounds: { chebyshev: { order: 5 } }
     let Some(&[v, k]) = occurs.absent.as_deref() else { panic!("{occurs:?}") };
     assert!(v / k.sqrt() < 0.2, "it occurs at v = {v}, k = {k}");
     for case in far.worst.as_ref().unwrap() {
-        // Samples beside the surface: steps err by 1.1e-7 m, as `max: ball.x` states there, by which one that just misses
-        // the event has it.
+        // Steps err by 1.1e-7 m, as `max: ball.x` states beside the surface: a sample that just misses the event may
+        // have it.
         let [v, k] = case.parameters[..] else { panic!("{case:?}") };
         let height = v / k.sqrt();
         assert!(height > 0.2 - 1.1e-7, "{case:?} reaches {height} m");
