@@ -9,6 +9,25 @@ use super::System;
 use super::system::{OutputInfo, Start};
 
 impl System {
+    /// Masses and forces of the equations of motion.
+    pub fn of_motion(&self) -> Vec<Expr> {
+        let mass = self.mass.iter().map(|&(_, _, value)| value);
+        mass.chain(self.inertia.iter().chain(&self.force).copied()).collect()
+    }
+
+    /// Number of expressions that masses, forces and constraints consist of.
+    pub fn length(&self) -> usize {
+        let mut roots = self.of_motion();
+        roots.extend(&self.constraint);
+        self.graph.reachable(&roots).len()
+    }
+
+    /// Whether the time itself is in the equations of motion or in constraints.
+    pub fn depends_on_time(&self) -> bool {
+        let is_in = |roots: &[Expr]| self.graph.symbols_of(roots).contains(&self.time);
+        is_in(&self.of_motion()) || is_in(&self.constraint)
+    }
+
     /// The equations for a configuration at rest, in which states rest, too: each is the position of its coordinate in
     /// place of its velocity, and its rate the force on it; a state that changes at instants has its new value.
     pub fn at_rest(&self) -> Cow<'_, Self> {

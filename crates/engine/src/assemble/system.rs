@@ -301,19 +301,6 @@ pub enum ConditionOf {
 }
 
 impl System {
-    /// Masses and forces of the equations of motion.
-    pub fn of_motion(&self) -> Vec<Expr> {
-        let mass = self.mass.iter().map(|&(_, _, value)| value);
-        mass.chain(self.inertia.iter().chain(&self.force).copied()).collect()
-    }
-
-    /// Number of expressions that masses, forces and constraints consist of.
-    pub fn length(&self) -> usize {
-        let mut roots = self.of_motion();
-        roots.extend(&self.constraint);
-        self.graph.reachable(&roots).len()
-    }
-
     /// Symbols of all inputs: level and slope of each, and value, rate and acceleration of random ones.
     pub fn input_symbols(&self) -> impl Iterator<Item = Expr> {
         let functions = self.inputs.iter().flat_map(|input| input.symbols);

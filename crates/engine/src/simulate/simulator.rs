@@ -17,7 +17,6 @@ use super::start::{
     shared_coordinates,
 };
 use super::statics::Equilibrium;
-use super::time_functions::depends_on_time;
 use super::tuning::TUNING;
 use crate::assemble::{EquationId, OutputId, System};
 use crate::compile::{
@@ -390,12 +389,6 @@ impl Simulator {
     /// Functions of the positions that a step may pass over, if forces have any.
     pub(super) fn features(&self) -> Option<&Features> {
         self.features.get_or_init(|| Features::of(&self.system)).as_ref()
-    }
-
-    /// Whether no force or constraint switches, depends on the time itself, or has a feature that a step may pass over:
-    /// local errors of steps then tell how long they may be.
-    pub fn is_smooth(&self) -> bool {
-        !depends_on_time(&self.system) && self.switches().is_none() && self.features().is_none()
     }
 
     /// Name of an equation of a step: a coordinate's equation of motion or a constraint.

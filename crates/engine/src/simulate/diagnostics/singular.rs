@@ -43,6 +43,12 @@ pub struct SingularWatch<'s> {
 }
 
 impl<'s> SingularWatch<'s> {
+    /// Whether steps may be as long as their local errors allow: no force or constraint switches, depends on the time
+    /// itself, or has a feature that a step may pass over.
+    pub fn allows_long_steps(simulator: &Simulator) -> bool {
+        !simulator.system.depends_on_time() && simulator.switches().is_none() && simulator.features().is_none()
+    }
+
     /// Begins at the start.
     pub fn new(simulator: &'s Simulator, stepper: &Stepper) -> Self {
         let start = Moment { time: 0.0, pivot_loss: f64::INFINITY, state: stepper.lane(0) };

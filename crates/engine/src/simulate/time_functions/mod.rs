@@ -16,4 +16,3 @@ pub(crate) mod tuning;
 pub use resolution::TimeFunctions;
 pub(in crate::simulate) use resolution::Work;
 pub(in crate::simulate) use resolving_steps::ResolvingSteps;
-pub(in crate::simulate) use terms::depends_on_time;

@@ -7,7 +7,6 @@ use std::f64::consts::PI;
 use rustc_hash::{FxHashMap, FxHashSet};
 use symdiff::{Binary, Expr, Graph, Node, Unary};
 
-use crate::assemble::System;
 use crate::simulate::simulator::Simulator;
 
 /// Functions of the time, over the symbols of `graph`.
@@ -32,7 +31,7 @@ struct Dependence {
 pub(super) fn functions(simulator: &Simulator) -> Option<Functions> {
     let system = &simulator.system;
     let roots = system.of_motion();
-    if !depends_on_time(system) {
+    if !system.depends_on_time() {
         return None;
     }
     let mut graph = system.graph.clone();
@@ -54,12 +53,6 @@ pub(super) fn functions(simulator: &Simulator) -> Option<Functions> {
     let within: Vec<Expr> = all.iter().map(|&(term, _)| term).collect();
     let conditions = conditions(&mut graph, system.time, &within);
     Some(Functions { graph, terms: all, conditions })
-}
-
-/// Whether the time itself is in the equations of motion or in constraints.
-pub fn depends_on_time(system: &System) -> bool {
-    let is_in = |roots: &[Expr]| system.graph.symbols_of(roots).contains(&system.time);
-    is_in(&system.of_motion()) || is_in(&system.constraint)
 }
 
 /// The largest subexpressions of time and parameters alone; and the smallest nonlinear functions of both time and

@@ -19,7 +19,7 @@ pub fn passes_singular(questions: &Questions, simulator: &Simulator) -> bool {
         Stepping::Tolerance(_) => TUNING.longest_look.min(simulation.output_step),
     };
     let shortest = shortest.max(simulation.duration / TUNING.looks);
-    let is_smooth = simulator.is_smooth();
+    let is_smooth = SingularWatch::allows_long_steps(simulator);
     let longest = if is_smooth { simulation.duration / TUNING.least_looks } else { shortest };
     let nominal: Sample = simulator.system.parameters.iter().map(|parameter| parameter.nominal).collect();
     let Ok(start) = simulator.assemble(1, shortest, |_| nominal.clone()) else { return true };
