@@ -131,8 +131,7 @@ pub fn solve<const N: usize>(
     for ends in times.windows(2) {
         let mut t = ends[0];
         while t < ends[1] {
-            let is_last = t + h >= ends[1];
-            let step = if is_last { ends[1] - t } else { h };
+            let (step, is_last) = towards(t, h, ends[1]);
             let next = attempt(&f, t, &y, step, &mut stages);
             let error = step * error(&stages, &y, tolerance);
             if error <= 1.0 {
@@ -141,13 +140,24 @@ pub fn solve<const N: usize>(
             }
             // A step that was cut short by a row says nothing against longer ones.
             if !is_last || error > 1.0 {
-                h = (step * (0.9 * error.powf(-0.125)).clamp(0.2, 5.0)).min(longest);
+                h = following(step, error, 5.0).min(longest);
             }
             assert!(step > 1e-14 * ends[1].abs() || is_last, "the reference solution does not proceed at {t} s");
         }
         solution.push(y);
     }
     solution
+}
+
+/// Length of a step from t that is h long or ends at a time, and whether it ends there.
+fn towards(t: f64, h: f64, end: f64) -> (f64, bool) {
+    let is_last = t + h >= end;
+    (if is_last { end - t } else { h }, is_last)
+}
+
+/// Length of the step after one with this error over the tolerance, at most so many times as long.
+fn following(step: f64, error: f64, most: f64) -> f64 {
+    step * (0.9 * error.powf(-0.125)).clamp(0.2, most)
 }
 
 /// The stages of a step from y at t, and where it leads.
@@ -191,13 +201,12 @@ pub fn solve_located<const N: usize, const S: usize>(
     for ends in times.windows(2) {
         let mut t = ends[0];
         while t < ends[1] {
-            let is_last = t + h >= ends[1];
-            let step = if is_last { ends[1] - t } else { h };
+            let (step, is_last) = towards(t, h, ends[1]);
             let held = |t: f64, y: &[f64], d: &mut [f64]| f(t, y, &sides, d);
             let mut next = attempt(&held, t, &y, step, &mut stages);
             let error = step * error(&stages, &y, tolerance);
             if error > 1.0 {
-                h = step * (0.9 * error.powf(-0.125)).clamp(0.2, 0.9);
+                h = following(step, error, 0.9);
                 assert!(h > 1e-14 * ends[1].abs(), "the reference solution does not proceed at {t} s");
                 continue;
             }
@@ -225,7 +234,7 @@ pub fn solve_located<const N: usize, const S: usize>(
             (y, sides) = (next, now);
             t = if is_last && !is_cut { ends[1] } else { t + taken };
             if !is_last || is_cut {
-                h = (step * (0.9 * error.powf(-0.125)).clamp(0.2, 5.0)).min(longest);
+                h = following(step, error, 5.0).min(longest);
             }
         }
         solution.push(y);

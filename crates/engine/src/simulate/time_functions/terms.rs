@@ -30,10 +30,10 @@ struct Dependence {
 /// The functions of the time in the equations of motion; `None` where there are none.
 pub(super) fn functions(simulator: &Simulator) -> Option<Functions> {
     let system = &simulator.system;
-    let roots = system.of_motion();
     if !system.depends_on_time() {
         return None;
     }
+    let roots = system.of_motion();
     let mut graph = system.graph.clone();
     let (mut whole, frozen) = maximal(&graph, simulator, &roots);
     let (prescribed, more_frozen) = maximal(&graph, simulator, &system.constraint);

@@ -70,7 +70,8 @@ pub(super) fn ends(row: &SegmentRow, lattice: &Lattice) -> Vec<Ends> {
     let in_segment = |(point, climb): (Point, &Option<&Climb>)| {
         (climb.map_or_else(|| point.segment(row.time), |climb| climb.segment), point)
     };
-    let errors = row.errors(&points.map(in_segment).collect::<Vec<_>>());
+    let places: Vec<(usize, Point)> = points.map(in_segment).collect();
+    let errors = row.errors(&places, &row.outputs_in(&places));
     let count = 2 * row.outputs;
     let errors = |output: usize| [0, 1].map(|end| errors[output * count + 2 * output + end]);
     let has_corners = of_outputs.iter().flatten().flatten().any(|climb| is_corner(&climb.point.xi));
@@ -115,8 +116,7 @@ fn begun(row: &SegmentRow, lattice: &Lattice) -> (Vec<(usize, Point)>, Vec<Climb
     if seeds.is_empty() {
         return (Vec::new(), Vec::new());
     }
-    let at: Vec<(&Point, usize, f64)> = seeds.iter().map(|(segment, point)| (point, *segment, time)).collect();
-    let values = row.outputs_on(&at);
+    let values = row.outputs_in(&seeds);
     let mut climbs = Vec::new();
     for (output, values) in values.chunks_exact(seeds.len()).enumerate() {
         for sign in [-1.0, 1.0] {

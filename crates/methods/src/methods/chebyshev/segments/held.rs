@@ -27,9 +27,8 @@ pub(super) struct Looked {
 
 impl Looked {
     pub fn at(row: &SegmentRow, places: Vec<(usize, Point)>) -> Self {
-        let at: Vec<(&Point, usize, f64)> = places.iter().map(|(segment, point)| (point, *segment, row.time)).collect();
-        let values = row.outputs_on(&at);
-        let errors = row.errors(&places);
+        let values = row.outputs_in(&places);
+        let errors = row.errors(&places, &values);
         Self { places, values, errors }
     }
 

@@ -50,7 +50,12 @@ impl SegmentRow<'_> {
         self.closed(points.iter().map(|(point, ..)| point.xi.as_slice()), count, motion)
     }
 
-    /// The same of points in the segments that they are in at the row's time.
+    /// The same at the row's time of points in segments of their own.
+    pub fn outputs_in(&self, places: &[(usize, Point)]) -> Vec<f64> {
+        self.outputs_on(&places.iter().map(|(segment, point)| (point, *segment, self.time)).collect::<Vec<_>>())
+    }
+
+    /// The same of points in the segments that they are in then.
     fn outputs_at(&self, points: &[Point]) -> Vec<f64> {
         let at: Vec<_> = points.iter().map(|point| (point, point.segment(self.time), self.time)).collect();
         self.outputs_on(&at)
@@ -67,13 +72,13 @@ impl SegmentRow<'_> {
         self.closure.outputs(self.time, count, parameters, motion)
     }
 
-    /// How far the polynomials' errors move outputs at points (output, point), which are ends of a range, each in the
-    /// segment in which its value was taken: there an event that is near may have been already, or not yet, each line
-    /// may be off by its own error, and a surface beside it by its.
+    /// How far the polynomials' errors move outputs `here` at points (output, point), which are ends of a range, each
+    /// in the segment in which its value was taken: there an event that is near may have been already, or not yet, each
+    /// line may be off by its own error, and a surface beside it by its.
     ///
     /// Lines have errors at times and at shares of their segment. Either is enough: within a contact, where a late
     /// instant makes a line late, an end at some share is found at that share beside it.
-    pub fn errors(&self, places: &[(usize, Point)]) -> Vec<f64> {
+    pub fn errors(&self, places: &[(usize, Point)], here: &[f64]) -> Vec<f64> {
         let surrogate = &self.piece.surrogate;
         let count = places.len();
         let at = |shift: f64| {
@@ -83,17 +88,15 @@ impl SegmentRow<'_> {
             };
             places.iter().map(|own| (&own.1, own.1.segment(shifted(own)), self.time)).collect::<Vec<_>>()
         };
-        let own: Vec<_> = places.iter().map(|(segment, point)| (point, *segment, self.time)).collect();
-        let here = self.outputs_on(&own);
         let of = |ways: [Vec<f64>; 2]| -> Vec<f64> {
             let value = |index: usize| largest(ways.iter().map(|way| way[index] - here[index]));
             (0..here.len()).map(value).collect()
         };
         let mut moved = of([-1.0, 1.0].map(|shift| self.outputs_on(&at(shift))));
         let add = |moved: &mut Vec<f64>, by: &[f64]| moved.iter_mut().zip(by).for_each(|(own, by)| *own += by);
-        add(&mut moved, &self.of_lines(places, &here, SegmentErrors::of_line));
-        let mut at_shares = self.along(places, &here);
-        add(&mut at_shares, &self.of_lines(places, &here, SegmentErrors::of_share));
+        add(&mut moved, &self.of_lines(places, here, SegmentErrors::of_line));
+        let mut at_shares = self.along(places, here);
+        add(&mut at_shares, &self.of_lines(places, here, SegmentErrors::of_share));
         // Errors that are unknown at times stay so.
         moved.iter_mut().zip(at_shares).filter(|(own, other)| other < *own).for_each(|(own, other)| *own = other);
         for end in 0..surrogate.ends.len() {
