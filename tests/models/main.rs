@@ -56,6 +56,7 @@ mod indexing;
 mod instants_in_a_part;
 mod invariants;
 mod joints_of_several_axes;
+mod jumps_at_events;
 mod kept;
 mod kinematics;
 mod linkages;

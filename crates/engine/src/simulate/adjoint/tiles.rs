@@ -312,9 +312,10 @@ impl TileOf<'_> {
             .collect();
         let last = rows.first().map_or(0.0, |row| row.time);
         let EventSteps { ends, events } = self.steps_to(last)?;
+        let at_events = events.iter().map(|(step, _)| *step).collect();
         let events = EventAdjoints::new(simulator, &start, events, schedule.time(schedule.rows - 1))?;
         let count = ends.len();
-        let steps = ExplicitSteps::new(simulator, &start, ends, inputs)?;
+        let steps = ExplicitSteps::new(simulator, &start, ends, at_events, inputs)?;
         let path = TilePath::new(steps, count, &mut |_, _| {});
         let mut closing = RowAdjoints::closing(simulator, simulator.free_closure()?, &start).under(inputs);
         let mut run = ExplicitAdjoints::new(simulator, &start, path)?.through(events);

@@ -12,7 +12,7 @@ use crate::simulate::control::SwitchWatch;
 use crate::simulate::ensemble::RowClosure;
 use crate::simulate::error::SimulationError;
 use crate::simulate::explicit::movement::Movement;
-use crate::simulate::explicit::runge_kutta::{RungeKutta, next_length};
+use crate::simulate::explicit::runge_kutta::{RungeKutta, before_event, next_length};
 use crate::simulate::features::{FeatureWork, Features, Passage};
 use crate::simulate::simulator::Simulator;
 
@@ -180,7 +180,7 @@ impl<'s> Path<'s> {
             if end <= begin || end.is_nan() {
                 return None;
             }
-            ratio = self.attempt(end);
+            ratio = self.attempt_to_event(end);
         }
         is_located.then(|| (end, ratio, Some(self.first_of(Event { switch, rises }))))
     }
@@ -202,8 +202,32 @@ impl<'s> Path<'s> {
         run.attempt(closure, end);
         run.finish(closure, end);
         watch.end(closure.tile());
+        self.error(end)
+    }
+
+    /// The same of a step that ends at an event, or where one is sought.
+    fn attempt_to_event(&mut self, end: f64) -> f64 {
+        let before = before_event(self.run.time, end);
+        self.run.attempt(&mut self.closure, before);
+        self.run.finish(&mut self.closure, before);
+        let ratio = self.error(before);
+        self.run.extrapolate(&mut self.closure, before, end);
+        self.watch.end(self.closure.tile());
+        ratio
+    }
+
+    /// Error over the tolerance of the step that was finished.
+    fn error(&self, end: f64) -> f64 {
         let sizes = self.movement.clone().reaching(&self.start, &self.run.next, 1).sizes();
         self.run.errors(end, &sizes, self.tolerance, 1)[0].ratio
+    }
+
+    /// Tries the step that was taken once more.
+    fn retake(&mut self, step: PathStep) {
+        match step.event {
+            Some(_) => self.attempt_to_event(step.end),
+            None => self.attempt(step.end),
+        };
     }
 
     /// Whether the step that was tried passes over what a force does in space.
@@ -240,7 +264,7 @@ impl<'s> Path<'s> {
         let [_, rate] = self.at_end(switch);
         self.attempt(step.end - back);
         let [_, before] = self.at_end(switch);
-        self.attempt(step.end);
+        self.retake(step);
         (rate - before) / back
     }
 
@@ -274,7 +298,7 @@ impl<'s> Path<'s> {
                 (high, low.1) = ((time, rate), 0.5 * low.1);
             }
         }
-        self.attempt(step.end);
+        self.retake(step);
         Some(least)
     }
 
@@ -301,14 +325,17 @@ impl<'s> Path<'s> {
         true
     }
 
-    /// Prepares [`interpolate`](Self::interpolate) in the step that was taken.
+    /// Prepares [`interpolate`](Self::interpolate) in the step that was taken; one that ends at an event is prepared.
     pub fn prepare_dense(&mut self, step: PathStep) {
-        self.run.prepare_dense(&mut self.closure, step.end);
+        if step.event.is_none() {
+            self.run.prepare_dense(&mut self.closure, step.end);
+        }
     }
 
-    /// Positions and velocities (2n) at a share of the step that was taken.
-    pub fn interpolate(&self, share: f64, into: &mut [f64]) {
-        self.run.interpolate(share, into);
+    /// Positions and velocities (2n) at a time within the step that was taken.
+    pub fn interpolate(&self, step: PathStep, time: f64, into: &mut [f64]) {
+        let end = if step.event.is_some() { before_event(step.begin, step.end) } else { step.end };
+        self.run.interpolate((time - step.begin) / (end - step.begin), into);
     }
 
     /// Goes on from the end of the step that was taken.

@@ -106,19 +106,12 @@ impl<'s> EventAdjoints<'s> {
         self.share(adjoints);
     }
 
-    /// Moves a stage of a step that ends at an event back along its motion to before the event, if it is behind: the
-    /// step's end is, by rounding, and slopes of forces are others there.
-    pub fn keep_before(&mut self, step: usize, time: &mut f64, state: &mut [f64]) {
-        if let Some(event) = self.event(step) {
-            self.move_before(event, time, state);
-        }
-    }
-
     fn event(&self, step: usize) -> Option<Event> {
         self.events.iter().find(|(own, _)| *own == step).map(|(_, event)| *event)
     }
 
-    /// Of lanes of one sample, so that what holds for the first lane does for all.
+    /// Moves a state behind an event back along its motion to before it: a step's end is behind by rounding. The lanes are
+    /// of one sample, so that what holds for the first lane does for all.
     fn move_before(&mut self, event: Event, time: &mut f64, state: &mut [f64]) {
         let half = state.len() / 2;
         let [mut more, most] = self.back;

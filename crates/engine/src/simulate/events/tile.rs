@@ -199,7 +199,8 @@ impl<'s> SegmentTile<'s> {
         }
         let mut solved = vec![event.is_none(); width];
         let steps = &word.steps[number];
-        let mut nodes = self.pass(steps);
+        let ends_at_event = event.is_some();
+        let mut nodes = self.pass(steps, ends_at_event);
         for _ in 0..TUNING.corrections_of_instant {
             for lane in (0..width).filter(|&lane| !solved[lane]).collect::<Vec<_>>() {
                 let Some(event) = event else { continue };
@@ -213,7 +214,7 @@ impl<'s> SegmentTile<'s> {
             if !solved.contains(&false) {
                 break;
             }
-            nodes = self.pass(steps);
+            nodes = self.pass(steps, ends_at_event);
         }
         if let Some(event) = event {
             // Where an event is hardly more than grazed, another one of its switch is beside it.
@@ -247,9 +248,10 @@ impl<'s> SegmentTile<'s> {
 
     /// Takes the steps of a segment, which end at these shares of it, with the lengths as they are: the states at its
     /// nodes.
-    fn pass(&mut self, steps: &[f64]) -> Vec<Vec<f64>> {
+    fn pass(&mut self, steps: &[f64], ends_at_event: bool) -> Vec<Vec<f64>> {
         let Self { motion, watch, state, .. } = self;
-        nodes::pass(motion, state, steps, |motion| watch.end(motion.closure.tile()))
+        let at_event = |motion: &Stretched| watch.end(motion.closure.tile());
+        nodes::pass(motion, state, steps, ends_at_event.then_some(at_event))
     }
 }
 
@@ -284,7 +286,7 @@ impl Alone<'_> {
             }
         }
         match self.step.filter(|_| !self.lost) {
-            Some(step) => self.path.interpolate((time - step.begin) / (step.end - step.begin), into),
+            Some(step) => self.path.interpolate(step, time, into),
             None => into.fill(f64::NAN),
         }
     }

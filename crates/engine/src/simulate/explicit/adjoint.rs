@@ -2,82 +2,18 @@
 //!
 //! A step's end is y + h Σ bᵢ kᵢ, moved onto the constraints, with kᵢ = f(t + cᵢ h, Yᵢ) and Yᵢ = y + h Σ aᵢⱼ kⱼ. The
 //! stages are evaluated once more, and followed from the last to the first: k̄ᵢ = h bᵢ ȳ₊ + h Σⱼ aⱼᵢ Ȳⱼ, Ȳᵢ = f_yᵀ k̄ᵢ.
-//! Rows within a step are sums of the same kind.
+//! Rows within a step are sums of the same kind, and so is the end of a step that ends at an event.
 
 use symdiff::Tile;
 
-use super::runge_kutta::RungeKutta;
+use super::listed::ExplicitSteps;
 use super::tableau::{DENSE, Row, STAGES, TIMES, WEIGHTS, WITH_DENSE};
 use super::tuning::TUNING;
-use crate::simulate::adjoint::{LaneTerm, RowAdjoints, StartAdjoints, Stepping, TileInputs, TileKernel, TilePath, add};
-use crate::simulate::ensemble::{Needs, RowClosure};
+use crate::simulate::adjoint::{LaneTerm, RowAdjoints, StartAdjoints, TileInputs, TileKernel, TilePath, add};
+use crate::simulate::ensemble::Needs;
 use crate::simulate::error::SimulationError;
 use crate::simulate::events::EventAdjoints;
-use crate::simulate::sampling::Instants;
 use crate::simulate::simulator::Simulator;
-
-/// A tile of samples that takes the steps of a list.
-#[derive(Debug)]
-pub(in crate::simulate) struct ExplicitSteps<'s> {
-    simulator: &'s Simulator,
-    motion: RowClosure<'s>,
-    run: RungeKutta,
-    /// Times at which steps end, s.
-    ends: Vec<f64>,
-    inputs: Option<&'s TileInputs>,
-}
-
-impl<'s> ExplicitSteps<'s> {
-    /// From an assembled tile.
-    ///
-    /// # Errors
-    /// Where the closure's equations have no factors.
-    pub fn new(
-        simulator: &'s Simulator,
-        start: &Tile,
-        ends: Vec<f64>,
-        inputs: Option<&'s TileInputs>,
-    ) -> Result<Self, SimulationError> {
-        let mut motion = RowClosure::new(simulator, start)?;
-        let layout = &simulator.start.layout;
-        let state = start.block(layout.q.start..layout.v.end).to_vec();
-        let run = RungeKutta::start(&mut motion, 0.0, state);
-        Ok(Self { simulator, motion, run, ends, inputs })
-    }
-
-    /// When a step begins, s.
-    fn begin(&self, step: usize) -> f64 {
-        step.checked_sub(1).map_or(0.0, |before| self.ends[before])
-    }
-}
-
-impl Stepping for ExplicitSteps<'_> {
-    fn state(&self) -> &[f64] {
-        &self.run.state
-    }
-
-    fn restore(&mut self, step: usize, state: &[f64]) {
-        let begin = self.begin(step);
-        self.run = RungeKutta::start(&mut self.motion, begin, state.to_vec());
-    }
-
-    fn advance(&mut self, step: usize) -> Option<Vec<f64>> {
-        let end = self.ends[step];
-        if let Some(inputs) = self.inputs {
-            self.motion.set_inputs(inputs.values(inputs.cell(end)));
-            let before = step.checked_sub(1).map(|before| self.ends[before]);
-            if inputs.begins(end, before) {
-                let state = std::mem::take(&mut self.run.state);
-                self.run = RungeKutta::start(&mut self.motion, before.unwrap_or(0.0), state);
-            }
-        }
-        self.run.attempt(&mut self.motion, end);
-        self.run.finish(&mut self.motion, end);
-        let unchanged = Instants::of(self.simulator).contain(end).then(|| self.run.next.clone());
-        self.run.accept(&mut self.motion, end);
-        unchanged
-    }
-}
 
 /// A row: its time, s, and the terms of lanes in it.
 #[derive(Clone, Debug)]
@@ -151,7 +87,8 @@ impl<'s> ExplicitAdjoints<'s> {
         let mut adjoints = vec![0.0; self.path.start().len()];
         let mut rows = rows.iter().peekable();
         for step in (0..self.path.steps()).rev() {
-            let (begin, end) = (self.path.stepping().begin(step), self.path.stepping().ends[step]);
+            let stepping = self.path.stepping();
+            let (begin, inner, end) = (stepping.begin(step), stepping.inner(step), stepping.ends[step]);
             let inputs = self.path.stepping().inputs;
             let mut of_row = |row: &ExplicitRow, motion: &[f64]| {
                 let mut by_motion = closing.pull(row.time, motion, &row.terms, values);
@@ -174,25 +111,23 @@ impl<'s> ExplicitAdjoints<'s> {
             if let Some(unchanged) = &unchanged {
                 self.pull_sampling(end, unchanged, &mut adjoints);
             }
-            let next = unchanged.unwrap_or(after);
-            let is_dense = rows.peek().is_some_and(|row| row.time > begin);
-            let h = end - begin;
-            self.evaluate(&state, &next, step, if is_dense { WITH_DENSE } else { STAGES - 1 });
+            let is_at_event = inner < end;
+            let next = Some(unchanged.unwrap_or(after)).filter(|_| !is_at_event);
+            let is_dense = is_at_event || rows.peek().is_some_and(|row| row.time > begin);
+            let h = inner - begin;
+            let next = self.evaluate(&state, next, [begin, inner], if is_dense { WITH_DENSE } else { STAGES - 1 });
             self.by_rates.iter_mut().for_each(|by_rate| by_rate.fill(0.0));
             let mut by_state = vec![0.0; state.len()];
+            if is_at_event {
+                let weights = interpolation((end - begin) / h);
+                self.pull_closure(end, &self.dense(&state, &next, h, &weights), &mut adjoints);
+                let by_end = std::mem::replace(&mut adjoints, vec![0.0; state.len()]);
+                self.pull_dense(&by_end, h, &weights, [&mut by_state, &mut adjoints]);
+            }
             while let Some(row) = rows.next_if(|row| row.time > begin) {
-                let (of_next, of_rates) = interpolation((row.time - begin) / h);
-                let mut motion: Vec<f64> =
-                    state.iter().zip(&next).map(|(state, next)| state + of_next * (next - state)).collect();
-                for (stage, weight) in of_rates.iter().enumerate().filter(|(_, weight)| **weight != 0.0) {
-                    self.add_rate(&mut motion, h * weight, stage);
-                }
-                let by_motion = of_row(row, &motion);
-                add(&mut by_state, 1.0 - of_next, &by_motion);
-                add(&mut adjoints, of_next, &by_motion);
-                for (by_rate, weight) in self.by_rates.iter_mut().zip(of_rates) {
-                    add(by_rate, h * weight, &by_motion);
-                }
+                let weights = interpolation((row.time - begin) / h);
+                let by_motion = of_row(row, &self.dense(&state, &next, h, &weights));
+                self.pull_dense(&by_motion, h, &weights, [&mut by_state, &mut adjoints]);
             }
             for stage in (STAGES..WITH_DENSE).rev().filter(|_| is_dense) {
                 let by_stage = self.pull_stage(stage);
@@ -202,7 +137,7 @@ impl<'s> ExplicitAdjoints<'s> {
                 let by_next = self.pull_stage(STAGES - 1);
                 add(&mut adjoints, 1.0, &by_next);
             }
-            self.pull_closure(end, h, &state, &mut adjoints);
+            self.pull_closure(inner, &self.end_of(&state, h), &mut adjoints);
             self.share(STAGES - 1, h, &adjoints, &mut by_state);
             for stage in (0..STAGES - 1).rev() {
                 let by_stage = self.pull_stage(stage);
@@ -239,20 +174,19 @@ impl<'s> ExplicitAdjoints<'s> {
         total
     }
 
-    /// The stages of a step, given the states at its ends.
-    fn evaluate(&mut self, state: &[f64], next: &[f64], step: usize, count: usize) {
+    /// The stages of a step between two times, given the state at its beginning and the one at its end, if that is known:
+    /// the latter.
+    fn evaluate(&mut self, state: &[f64], next: Option<Vec<f64>>, [begin, end]: [f64; 2], count: usize) -> Vec<f64> {
         let layout = self.memory.layout();
-        let begin = self.path.stepping().begin(step);
-        let h = self.path.stepping().ends[step] - begin;
+        let h = end - begin;
+        let mut next = next;
         for stage in 0..count {
-            let mut at = if stage == STAGES - 1 { next.to_vec() } else { state.to_vec() };
-            for &(other, weight) in if stage == STAGES - 1 { &[][..] } else { WEIGHTS[stage] } {
-                self.add_rate(&mut at, h * weight, other);
-            }
             self.times[stage] = begin + TIMES[stage] * h;
-            if let Some(events) = &mut self.events {
-                events.keep_before(step, &mut self.times[stage], &mut at);
-            }
+            let at = if stage == STAGES - 1 {
+                next.get_or_insert_with(|| self.closed(end, self.end_of(state, h))).clone()
+            } else {
+                self.combined(state, h, stage)
+            };
             self.memory.set(self.times[stage], layout.q.start, &at);
             let unknowns = layout.w.start..layout.lambda.end;
             self.guesses[stage].copy_from_slice(self.memory.values(unknowns.clone()));
@@ -263,6 +197,39 @@ impl<'s> ExplicitAdjoints<'s> {
             }
             self.unknowns[stage].copy_from_slice(self.memory.values(unknowns));
             self.stages[stage] = at;
+        }
+        next.unwrap_or_default()
+    }
+
+    /// A state plus h times the rates of earlier stages with a stage's weights.
+    fn combined(&self, state: &[f64], h: f64, stage: usize) -> Vec<f64> {
+        let mut sum = state.to_vec();
+        WEIGHTS[stage].iter().for_each(|&(other, weight)| self.add_rate(&mut sum, h * weight, other));
+        sum
+    }
+
+    /// The end of a step from a state, before it is closed.
+    fn end_of(&self, state: &[f64], h: f64) -> Vec<f64> {
+        self.combined(state, h, STAGES - 1)
+    }
+
+    /// The motion by weights of [`interpolation`] in a step.
+    fn dense(&self, state: &[f64], next: &[f64], h: f64, (of_next, of_rates): &DenseWeights) -> Vec<f64> {
+        let mut motion: Vec<f64> =
+            state.iter().zip(next).map(|(state, next)| state + of_next * (next - state)).collect();
+        for (stage, weight) in of_rates.iter().enumerate().filter(|(_, weight)| **weight != 0.0) {
+            self.add_rate(&mut motion, h * weight, stage);
+        }
+        motion
+    }
+
+    /// Adds adjoints of such a motion to those of the states at the step's ends, and of its rates.
+    fn pull_dense(&mut self, by: &[f64], h: f64, (of_next, of_rates): &DenseWeights, ends: [&mut [f64]; 2]) {
+        let [by_state, by_next] = ends;
+        add(by_state, 1.0 - of_next, by);
+        add(by_next, *of_next, by);
+        for (by_rate, weight) in self.by_rates.iter_mut().zip(of_rates) {
+            add(by_rate, h * weight, by);
         }
     }
 
@@ -302,17 +269,24 @@ impl<'s> ExplicitAdjoints<'s> {
         }
     }
 
-    /// Through the closure of a step's end, given the state at its beginning.
-    fn pull_closure(&mut self, end: f64, h: f64, state: &[f64], adjoints: &mut [f64]) {
+    /// A state moved onto the constraints.
+    fn closed(&mut self, time: f64, state: Vec<f64>) -> Vec<f64> {
+        if !self.closes {
+            return state;
+        }
+        let layout = self.closures.layout();
+        self.closures.set(time, layout.q.start, &state);
+        self.closures.close(TUNING.closing_corrections);
+        self.closures.values(layout.q.start..layout.v.end).to_vec()
+    }
+
+    /// Through the closure of a state.
+    fn pull_closure(&mut self, time: f64, state: &[f64], adjoints: &mut [f64]) {
         if !self.closes {
             return;
         }
         let layout = self.closures.layout();
-        let mut next = state.to_vec();
-        for &(stage, weight) in WEIGHTS[STAGES - 1] {
-            self.add_rate(&mut next, h * weight, stage);
-        }
-        self.closures.set(end, layout.q.start, &next);
+        self.closures.set(time, layout.q.start, state);
         let closing = self.closures.close(TUNING.closing_corrections);
         self.closures.add(layout.q.start, adjoints);
         self.closures.pull_closing(&closing);
@@ -331,9 +305,12 @@ impl<'s> ExplicitAdjoints<'s> {
     }
 }
 
+/// Weights of the change over a step, and of the rates times h.
+type DenseWeights = (f64, [f64; WITH_DENSE]);
+
 /// Dense output at a share of the step as a sum: the weight of the change over the step, and those of the rates times
 /// h.
-fn interpolation(share: f64) -> (f64, [f64; WITH_DENSE]) {
+fn interpolation(share: f64) -> DenseWeights {
     let rest = 1.0 - share;
     let mut powers = [share; 3 + DENSE.len()];
     for term in 1..powers.len() {
@@ -352,6 +329,7 @@ fn interpolation(share: f64) -> (f64, [f64; WITH_DENSE]) {
 mod tests {
     use super::*;
     use crate::simulate::drive::Motion;
+    use crate::simulate::explicit::runge_kutta::RungeKutta;
 
     /// x' = v + t², v' = −x²: rates that differ in all stages.
     struct Falling;

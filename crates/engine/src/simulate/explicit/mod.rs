@@ -10,10 +10,12 @@
 //! - `movement`: how far the motion has gone, which errors count against;
 //! - `controlling`: the samples that decide on the steps, and where their equations switch;
 //! - `steps`: the steps that a tolerance asks for, and what stands against the method;
-//! - `tile`: samples, or a jet, over a schedule.
+//! - `tile`: samples, or a jet, over a schedule;
+//! - `listed`: steps that end at given times, and `adjoint`: backwards over them.
 
 mod adjoint;
 mod controlling;
+mod listed;
 pub(in crate::simulate) mod movement;
 pub(in crate::simulate) mod runge_kutta;
 mod steps;
@@ -21,7 +23,8 @@ mod tableau;
 mod tile;
 pub(crate) mod tuning;
 
-pub(in crate::simulate) use adjoint::{ExplicitAdjoints, ExplicitRow, ExplicitSteps};
+pub(in crate::simulate) use adjoint::{ExplicitAdjoints, ExplicitRow};
+pub(in crate::simulate) use listed::ExplicitSteps;
 pub use steps::{ExplicitObstacle, explicit_schedule};
 pub(crate) use tableau::{DENSE, STAGES, TIMES, WEIGHTS, WITH_DENSE};
 pub(in crate::simulate) use tile::{ExplicitJets, ExplicitRun};

@@ -44,6 +44,12 @@ pub(in crate::simulate) fn next_length(step: f64, ratio: f64) -> f64 {
     }
 }
 
+/// Where the stages of a step end whose end is at an event, a little before it: forces may jump there, and stages as late
+/// as the step's end are on either side of it by chance.
+pub(in crate::simulate) fn before_event(begin: f64, end: f64) -> f64 {
+    end - TUNING.before_event * (end - begin)
+}
+
 impl RungeKutta {
     /// From a state.
     pub fn start(motion: &mut impl Motion, time: f64, state: Vec<f64>) -> Self {
@@ -74,6 +80,16 @@ impl RungeKutta {
     pub fn finish(&mut self, motion: &mut impl Motion, end: f64) {
         motion.close(end, &mut self.next);
         motion.rate(end, &self.next, &mut self.rates[STAGES - 1]);
+    }
+
+    /// Goes on along the dense output of the step that was finished, before an event, to a time behind it, and evaluates
+    /// the state there. Shares of the dense output are those of the step before the event.
+    pub fn extrapolate(&mut self, motion: &mut impl Motion, before: f64, end: f64) {
+        self.prepare_dense(motion, before);
+        let mut next = std::mem::take(&mut self.next);
+        self.interpolate((end - self.time) / (before - self.time), &mut next);
+        self.next = next;
+        self.finish(motion, end);
     }
 
     /// Goes on from the end of the step that was finished.
@@ -110,7 +126,7 @@ impl RungeKutta {
         }
     }
 
-    /// The state at a share of the step that dense output was made of.
+    /// The state at a share of the step that dense output was made of; a little more than 1 is beyond its end.
     pub fn interpolate(&self, share: f64, into: &mut [f64]) {
         for (index, into) in into.iter_mut().enumerate() {
             let mut value = 0.0;

@@ -19,6 +19,9 @@ tuning! {
         run_width: usize = 32, moves "time only";
         /// Places in a step at which outputs are taken that are reduced to one number: between them they are cubics.
         places_of_reduced: usize = 16, moves "reduced outputs of explicit runs, also through events";
+        /// Stages of a step that ends at an event end before it by this share of the step. Those as late as its end are
+        /// less accurate than it, and would be on either side of the event by chance.
+        before_event: f64 = 1e-4, moves "bounds of motions with events";
         /// Smallest step, as a share of the duration.
         smallest_step: f64 = 1e-12, moves "the steps of explicit runs";
         /// A switch is located to this share of the duration.
