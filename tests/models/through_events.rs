@@ -547,11 +547,15 @@ fn a_single_motion_takes_few_steps() {
     assert!(largest(off) < 1e-8);
 }
 
-/// Steps that the scheme takes are not those between events.
+/// Steps that HHT-I3 takes are not those between events; those of the explicit method are.
 #[test]
 fn a_scheme_that_is_asked_for_is_taken() {
     let (_, summary) = run_methods(&read(ELASTIC).by_hht(), None);
     assert!(!integrated(&summary, "chebyshev").0);
+    let text = ELASTIC.replace("step: 1e-3", "tolerance: 1e-6, scheme: explicit");
+    let (bounds, summary) = run_methods(&read(&text), None);
+    assert!(integrated(&summary, "chebyshev").0);
+    assert_true(&bounds, "v", 1e-2, 1e-2, |t| over_box(1, t));
 }
 
 /// A ball on a floor whose losses grow with the speed: it comes to rest, and rests for most of the time.

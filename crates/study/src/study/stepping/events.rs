@@ -1,7 +1,7 @@
 //! Whether motions are cut at events, and the steps between them.
 
 use super::controlled::controlling_samples;
-use super::validated::may_extrapolate;
+use super::validated::may_leave_scheme;
 use crate::methods::Keep;
 use crate::model::{Analysis, Description, Stepping};
 use crate::numerics::{Sample, spread};
@@ -28,7 +28,7 @@ pub fn segmented(study: &Study) -> Result<Option<Schedule>, SimulationError> {
 /// Samples show their events themselves if they are fewer than those that show the box's. A random motion meets more
 /// than are followed.
 pub fn segmented_samples(study: &Study, samples: &[Sample]) -> Result<Option<Schedule>, SimulationError> {
-    let may_be_cut = may_extrapolate(study) && opens_nothing(study) && !has_given_steps(study);
+    let may_be_cut = may_leave_scheme(study) && opens_nothing(study) && !has_given_steps(study);
     if !may_be_cut || is_random(study.description) {
         return Ok(None);
     }
@@ -116,7 +116,7 @@ fn event_samples(study: &Study) -> Vec<Sample> {
 fn may_be_cut(study: &Study) -> bool {
     let problem = problem(study.description, &study.simulator);
     let methods = study.request.methods();
-    may_extrapolate(study)
+    may_leave_scheme(study)
         && (study.domain.dimension() == 0 || methods.iter().all(|(_, method)| method.follows_events(&problem)))
         && !methods.is_empty()
         && !(study.request.keep == Keep::WholeBox && is_random(study.description))

@@ -16,11 +16,17 @@ pub fn integration(study: &Study) -> Integration {
     }
 }
 
-/// Whether a tolerance may choose levels of extrapolation. Certified bounds enclose the scheme itself.
+/// Whether a tolerance may choose levels of extrapolation.
 pub fn may_extrapolate(study: &Study) -> bool {
+    study.description.simulation.scheme == SchemeChoice::Auto && may_leave_scheme(study)
+}
+
+/// Whether motions may be integrated otherwise than by HHT-I3 with the model's levels. Certified bounds enclose the
+/// scheme itself.
+pub fn may_leave_scheme(study: &Study) -> bool {
     let Simulation { scheme, extrapolation, .. } = study.description.simulation;
     let only_sampled = study.request.methods().iter().all(|(method, _)| method.about().is_sampled);
-    scheme == SchemeChoice::Auto && extrapolation.is_none() && only_sampled
+    scheme != SchemeChoice::Hht && extrapolation.is_none() && only_sampled
 }
 
 /// A schedule with those steps divided that do not resolve a function of the time.
