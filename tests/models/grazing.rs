@@ -132,3 +132,28 @@ fn a_nominal_throw_may_graze() {
     };
     assert_within(&bounds, "y", Method::Taylor, 1e-4, |t| truth(0, t));
 }
+
+/// A contact so stiff that the layer behind the surface has three parts: the one in the middle has samples from its one
+/// end to the other. The fastest throw under the highest ceiling misses it, and turns back last.
+#[test]
+fn layers_in_the_middle_have_samples_of_their_own() {
+    let text = throw(
+        [
+            "9.81",
+            "{ interval: [0.08065, 0.08429] }",
+            "{ interval: [1.1251, 1.2749] }",
+            "{ interval: [3.475e6, 3.487e6] }",
+        ],
+        0.392,
+        0.014,
+        "chebyshev: { order: 4 }",
+    );
+    let (bounds, summary) = run_methods(&read(&text), None);
+    assert!(integrated(&summary, "chebyshev").0);
+    let own = band(output(&bounds, "v"), Method::Chebyshev);
+    for row in 10..bounds.times.len() {
+        let fastest = 1.2749 - 9.81 * bounds.times[row];
+        let (off, error) = ((own.upper[row] - fastest).abs(), own.error.total[row]);
+        assert!(off <= error && error < 5e-3, "{off:e}, {error:e} stated at {} s", bounds.times[row]);
+    }
+}

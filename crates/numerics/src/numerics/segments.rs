@@ -77,6 +77,19 @@ impl SegmentMotions {
         }
     }
 
+    /// Largest size of each line over all nodes and samples.
+    pub fn scales(&self) -> Vec<f64> {
+        let count = self.samples.len().max(1);
+        let mut scales = Vec::new();
+        for node in self.nodes.iter().flatten() {
+            scales.resize(node.len() / count, 0.0);
+            for (scale, line) in scales.iter_mut().zip(node.chunks_exact(count)) {
+                *scale = line.iter().fold(*scale, |most: f64, value| most.max(value.abs()));
+            }
+        }
+        scales
+    }
+
     /// With other times, and other values at nodes.
     #[must_use]
     pub fn mapped(&self, values: impl Fn(&Vec<f64>) -> Vec<f64>) -> Self {

@@ -30,6 +30,9 @@ pub(super) struct Fitted {
     of_depths: Powers,
     /// Middle and half width of the box about the samples along each axis.
     about: Vec<(f64, f64)>,
+    /// The axis whose ξ the root of a depth stands for, if one does: a layer is thin, and there everything changes with
+    /// that root, which polynomials of ξ do not resolve.
+    across: Option<(usize, Level)>,
 }
 
 /// A polynomial whose zeros are a surface in the box.
@@ -118,6 +121,18 @@ impl Level {
         self.powers.values(xi, &mut terms);
         terms.iter().zip(&self.coefficients).map(|(term, coefficient)| term * coefficient).sum()
     }
+
+    /// Root of the depth behind the surface; zero before it.
+    fn root(&self, xi: &[f64]) -> f64 {
+        (-self.at(xi)).max(0.0).sqrt()
+    }
+
+    /// Its slope along an axis.
+    fn slope(&self, xi: &[f64], axis: usize) -> f64 {
+        let mut beside = xi.to_vec();
+        beside[axis] += TUNING.step_of_surfaces;
+        (self.at(&beside) - self.at(xi)) / TUNING.step_of_surfaces
+    }
 }
 
 impl End {
@@ -131,6 +146,11 @@ impl End {
         self.sign * self.level.at(xi) - self.offset
     }
 
+    /// Whether a layer ends there, away from the surface behind which it is.
+    pub fn is_far(&self) -> bool {
+        self.offset < 0.0
+    }
+
     /// How far the surface may be from the true one: what only divides a part is where it is put.
     pub fn error(&self) -> f64 {
         if self.offset == 0.0 { self.level.error } else { 0.0 }
@@ -140,29 +160,55 @@ impl End {
 impl Fitted {
     /// For samples at these ξ.
     pub fn new(degree: usize, depths: &[Level], samples: &[Vec<f64>]) -> Self {
+        Self::about(degree, depths, None, samples)
+    }
+
+    /// With the root of a depth in place of the ξ along which it changes most.
+    pub fn across(degree: usize, depth: &Level, samples: &[Vec<f64>]) -> Self {
         let k = samples.first().map_or(0, Vec::len);
-        let of_axis = |axis: usize| {
-            let own = samples.iter().map(|xi| xi[axis]);
-            let (low, high) = (own.clone().fold(f64::INFINITY, f64::min), own.fold(f64::NEG_INFINITY, f64::max));
-            (0.5 * (low + high), if high > low { 0.5 * (high - low) } else { 1.0 })
-        };
-        Self {
+        let slope = |axis: usize| -> f64 { samples.iter().map(|xi| depth.slope(xi, axis).abs()).sum() };
+        let axis = (0..k).max_by(|&a, &b| slope(a).total_cmp(&slope(b))).unwrap_or(0);
+        Self::about(degree, &[], Some((axis, depth.clone())), samples)
+    }
+
+    fn about(degree: usize, depths: &[Level], across: Option<(usize, Level)>, samples: &[Vec<f64>]) -> Self {
+        let k = samples.first().map_or(0, Vec::len);
+        let mut own = Self {
             powers: Powers::up_to(degree, k),
             depths: depths.to_vec(),
             of_depths: Powers::up_to(degree.saturating_sub(1), k),
-            about: (0..k).map(of_axis).collect(),
-        }
+            about: vec![(0.0, 1.0); k],
+            across,
+        };
+        let places: Vec<Vec<f64>> = samples.iter().map(|xi| own.place(xi)).collect();
+        let of_axis = |axis: usize| {
+            let along = places.iter().map(|place| place[axis]);
+            let (low, high) = (along.clone().fold(f64::INFINITY, f64::min), along.fold(f64::NEG_INFINITY, f64::max));
+            (0.5 * (low + high), if high > low { 0.5 * (high - low) } else { 1.0 })
+        };
+        own.about = (0..k).map(of_axis).collect();
+        own
     }
 
     pub fn len(&self) -> usize {
         self.powers.0.len() + self.depths.len() * self.of_depths.0.len()
     }
 
+    /// The place of some ξ in the box about the samples.
+    fn place(&self, xi: &[f64]) -> Vec<f64> {
+        let mut place = xi.to_vec();
+        if let Some((axis, depth)) = &self.across {
+            place[*axis] = depth.root(xi);
+        }
+        place.iter_mut().zip(&self.about).for_each(|(own, (middle, half))| *own = (*own - middle) / half);
+        place
+    }
+
     fn values(&self, xi: &[f64], into: &mut Vec<f64>) {
-        let place: Vec<f64> = xi.iter().zip(&self.about).map(|(xi, (middle, half))| (xi - middle) / half).collect();
+        let place = self.place(xi);
         self.powers.values(&place, into);
         for depth in &self.depths {
-            let root = (-depth.at(xi)).max(0.0).sqrt();
+            let root = depth.root(xi);
             let first = into.len();
             self.of_depths.values(&place, into);
             into[first..].iter_mut().for_each(|term| *term *= root);
@@ -276,5 +322,33 @@ mod tests {
             let value: f64 = terms.iter().zip(&coefficients).map(|(term, coefficient)| term * coefficient).sum();
             assert!((value - line(xi)).abs() < 1e-12, "{:e} at {xi}", value - line(xi));
         }
+    }
+
+    /// A layer in which a contact's length goes with atan √d: from 1e-7 to 1e-5 deep behind a curved surface.
+    #[test]
+    fn layers_are_resolved_by_the_root_of_their_depth() {
+        let margin = |xi: &[f64]| xi[0] - 0.2 * xi[1] * xi[1];
+        let of = |xi: &[f64]| (1.0 + 0.1 * xi[1]) * (3e2 * (-margin(xi)).sqrt()).atan();
+        let at = |index: usize, count: usize| {
+            let (along, deep) = (index as f64 / count as f64 * 2.0 - 1.0, (index * 7 % count) as f64 / count as f64);
+            let root = 3e-4 + deep * (3e-3 - 3e-4);
+            vec![0.2 * along * along - root * root, along]
+        };
+        let points = crate::numerics::spread(2, 60);
+        let all: Vec<(&[f64], f64)> = points.iter().map(|xi| (&xi[..], margin(xi))).collect();
+        let level = Level::through(&all).unwrap();
+        let xi: Vec<Vec<f64>> = (0..40).map(|index| at(index, 40)).collect();
+        let values: Vec<f64> = xi.iter().map(|xi| of(xi)).collect();
+        let worst = |fitted: Fitted| {
+            let basis = Basis::Fitted(fitted);
+            let (own, _) = LeastSquares::new(&basis.values(&xi), vec![1.0; 40]).unwrap().fit(&values).unwrap();
+            let others: Vec<Vec<f64>> = (0..97).map(|index| at(index, 97)).collect();
+            let found = basis.values(&others).into_iter();
+            let value = |terms: Vec<f64>| -> f64 { terms.iter().zip(&own).map(|(term, own)| term * own).sum() };
+            largest(found.map(value).zip(&others).map(|(value, xi)| value - of(xi)))
+        };
+        let across = worst(Fitted::across(5, &level, &xi));
+        let along = worst(Fitted::new(4, std::slice::from_ref(&level), &xi));
+        assert!(across < 2e-3 && across < 0.2 * along, "{across} {along}");
     }
 }

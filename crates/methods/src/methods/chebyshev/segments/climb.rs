@@ -123,7 +123,7 @@ fn begun(row: &SegmentRow, lattice: &Lattice) -> (Vec<(usize, Point)>, Vec<Climb
             let mut order: Vec<usize> = (0..seeds.len()).filter(|&seed| values[seed].is_finite()).collect();
             order.sort_by(|&a, &b| (sign * values[b]).total_cmp(&(sign * values[a])));
             let mut chosen: Vec<usize> = Vec::new();
-            for seed in order {
+            for &seed in &order {
                 let (segment, point) = &seeds[seed];
                 let differs = |&other: &usize| {
                     let (of_other, other) = &seeds[other];
@@ -133,6 +133,12 @@ fn begun(row: &SegmentRow, lattice: &Lattice) -> (Vec<(usize, Point)>, Vec<Climb
                 if chosen.len() < TUNING.climbs && chosen.iter().all(differs) {
                     chosen.push(seed);
                 }
+            }
+            // Where two segments meet, both have the value there, and the ridge may be in either.
+            let first = chosen.first().map(|&seed| seeds[seed].0);
+            let is_other = |seed: &usize| Some(seeds[*seed].0) != first;
+            if !chosen.iter().any(is_other) {
+                chosen.extend(order.iter().copied().find(is_other));
             }
             climbs.extend(chosen.into_iter().map(|seed| {
                 let (segment, point) = seeds[seed].clone();

@@ -103,24 +103,32 @@ impl Fitting<'_> {
         let xi: Vec<Vec<f64>> = motions.samples.iter().map(|&sample| self.samples.xi[sample].clone()).collect();
         xi.first()?;
         let (count, depths) = (xi.len(), part.depths(levels));
-        let of_degree = |degree: usize, depths: &[Level]| {
-            let basis = Basis::Fitted(Fitted::new(degree, depths, &xi));
-            let is_enough = count as f64 >= TUNING.samples_a_term * basis.len() as f64 || degree == 0;
+        // A line that is zero at an event, but for rounding, is no measure of it.
+        let duration = largest(motions.times.iter().flatten().copied());
+        let scales = motions.scales();
+        let of_terms = |(degree, fitted): (usize, Fitted)| {
+            let is_enough = count as f64 >= TUNING.samples_a_term * fitted.len() as f64 || degree == 0;
+            let basis = Basis::Fitted(fitted);
             let squares = LeastSquares::new(&basis.values(&xi), vec![1.0; count]).filter(|_| is_enough)?;
-            let left_out = |values: &[f64]| {
+            let left_out = |(values, scale): (&[f64], f64)| {
                 let [low, high] = [f64::min, f64::max].map(|pick| values.iter().copied().reduce(pick).unwrap_or(0.0));
                 let error = squares.fit(values).map_or(f64::INFINITY, |(_, error)| largest(error));
                 // What varies by rounding only says nothing of a degree.
-                let varies = high - low > TUNING.rounding * low.abs().max(high.abs());
-                if varies { error / (high - low) } else { 0.0 }
+                if high - low > TUNING.rounding * scale { error / (high - low) } else { 0.0 }
             };
-            let ends = motions.nodes.iter().filter_map(|nodes| nodes.last()).flat_map(|node| node.chunks_exact(count));
-            let misses = motions.times.iter().map(Vec::as_slice).chain(ends).map(left_out).fold(0.0, f64::max);
+            let times = motions.times.iter().map(|times| (times.as_slice(), duration));
+            let ends = motions.nodes.iter().filter_map(|nodes| nodes.last());
+            let ends = ends.flat_map(|node| node.chunks_exact(count).zip(scales.iter().copied()));
+            let misses = times.chain(ends).map(left_out).fold(0.0, f64::max);
             Some((misses, basis, squares))
         };
-        let none: &[Level] = &[];
-        let tried = (0..=self.degree).flat_map(|degree| [none, &depths].map(|depths| of_degree(degree, depths)));
-        let (misses, basis, squares) = tried.flatten().min_by(|a, b| a.0.total_cmp(&b.0))?;
+        let of_degree = |degree: usize| {
+            let plain = [&[][..], &depths].map(|depths| Fitted::new(degree, depths, &xi));
+            let across = depths.iter().filter(|_| degree > 0).map(|depth| Fitted::across(degree, depth, &xi));
+            plain.into_iter().chain(across).map(|fitted| (degree, fitted)).collect::<Vec<_>>()
+        };
+        let tried = (0..=self.degree).flat_map(of_degree).filter_map(of_terms);
+        let (misses, basis, squares) = tried.min_by(|a, b| a.0.total_cmp(&b.0))?;
         let fits = |values: &[f64]| -> Vec<(Vec<f64>, Vec<f64>)> {
             values.chunks_exact(count).filter_map(|line| squares.fit(line)).collect()
         };

@@ -91,21 +91,23 @@ impl Fitting<'_> {
             let terms = Fitted::new(self.degree, &depths, xi).len();
             let lacks = ((TUNING.samples_a_term * terms as f64) as usize + 2).saturating_sub(inside.len());
             let fits = |point: &Vec<f64>| ends.iter().all(|end| end.margin(point) >= 0.0) && !xi.contains(point);
-            // Those beside a surface, on lines across it.
-            let beside = if ends.iter().any(|end| end.sign < 0.0 && end.offset == 0.0) {
-                lacks
-            } else {
-                lacks / TUNING.beside_surface
-            };
+            // Those beside a surface, and of layers, on lines across it.
+            let is_layer = ends.iter().any(End::is_far);
+            let touches = ends.iter().any(|end| end.sign < 0.0 && end.offset == 0.0);
+            let beside = if is_layer || touches { lacks } else { lacks / TUNING.beside_surface };
             let of_word: Vec<&Vec<f64>> = own.iter().map(|&sample| &xi[sample]).collect();
-            let on_lines = ends.iter().filter(|end| end.offset == 0.0).flat_map(|end| {
+            let begins = |end: &&End| end.offset == 0.0 || is_layer && !end.is_far();
+            let on_lines = ends.iter().filter(begins).flat_map(|end| {
                 let margin = |point: &Vec<f64>| end.margin(point);
                 let deepest = of_word.iter().map(|point| margin(point)).fold(0.0, f64::max);
                 // A layer ends before.
-                let limits = ends.iter().filter(|other| other.offset < 0.0).map(|other| -other.offset);
+                let limits = ends.iter().filter(|other| other.is_far()).map(|other| -other.offset - end.offset);
                 let depth = limits.fold(deepest, f64::min);
                 let others: Vec<&Vec<f64>> = xi.iter().filter(|point| margin(point) < 0.0).collect();
-                across(&of_word, &others, beside, margin, |share| depth * share * share)
+                // Apart by equal roots of the depth behind the surface.
+                let [first, last] = [end.offset, end.offset + depth].map(f64::sqrt);
+                let at = move |share: f64| (first + share * (last - first)).powi(2) - end.offset;
+                across(&of_word, &others, beside, margin, at)
             });
             let mut own: Vec<Vec<f64>> = on_lines.filter(fits).take(beside).collect();
             let others = of_box.iter().filter(|point| fits(point)).cloned();

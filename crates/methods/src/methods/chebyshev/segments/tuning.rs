@@ -49,7 +49,7 @@ tuning! {
         coverings: usize = 6, moves "Chebyshev bounds through events";
         /// A polynomial does that misses samples that are left out by no more than this share of how far they range.
         enough: f64 = 1e-3, moves "Chebyshev bounds through events";
-        /// Values that differ by this share of them are the same.
+        /// Values that differ by this share of how large they are anywhere in the motion are the same.
         rounding: f64 = 1e-9, moves "Chebyshev bounds through events";
         /// Total degree with which polynomials of many parameters begin.
         first_degree: usize = 2, moves "Chebyshev bounds through events";
