@@ -34,6 +34,9 @@ pub enum Error {
         /// Names of the uncertain parameters, in their order.
         parameters: Vec<String>,
     },
+    /// A setting of a study, as its time step, is outside of its range.
+    #[error("{0}")]
+    Setting(String),
     /// It was asked to stop before there was a result.
     #[error("interrupted before there were results")]
     Interrupted,
@@ -74,6 +77,7 @@ impl Error {
             Self::Run(error) => error.code(),
             Self::Unsuitable(_) => Some(Code::Unsuitable),
             Self::Cost(error) => error.code(),
+            Self::Setting(_) => Some(Code::OutOfRange),
             Self::Point { .. } => Some(Code::BadOverride),
             Self::Interrupted => None,
             Self::Gradient(error) => error.code(),
