@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use super::{Axis, Error, Study, Sweep};
-use crate::model::{Changes, Description, Override, ParameterValue, Reading, read_rooted, read_text};
-use crate::results::{Explanation, Gradients, Verification};
+use crate::model::{Changes, Description, Override, ParameterValue, Reading, Witness, read_rooted, read_text};
+use crate::results::{Gradients, Verification};
 use crate::study::{self, Options, RunError};
 use crate::syntax::Diagnostics;
 
@@ -33,6 +33,8 @@ struct Asked {
     scene: Option<String>,
     /// Outputs in place of the model's: names and formulas.
     outputs: Option<Vec<(String, String)>>,
+    /// Functions that its excitations are.
+    witness: Option<Witness>,
 }
 
 impl Model {
@@ -93,6 +95,14 @@ impl Model {
         Self::read(self.origin, Asked { outputs: Some(outputs), ..self.asked })
     }
 
+    /// The same model with the functions and the values of a witness (`witness.NAME.csv` of a run): its text.
+    ///
+    /// # Errors
+    /// [`Error::Witness`]: it is no witness, or not one of this model.
+    pub fn replaying(self, witness: &str) -> Result<Self, Error> {
+        Self::read(self.origin, Asked { witness: Some(Witness::parse(witness)?), ..self.asked })
+    }
+
     fn read(origin: Origin, asked: Asked) -> Result<Self, Error> {
         let changes = Changes { overrides: &asked.overrides, outputs: asked.outputs.as_deref() };
         let reading = match &origin {
@@ -102,10 +112,13 @@ impl Model {
         let warnings = reading.diagnostics.clone();
         let scenes = reading.scenes.iter().map(|scene| scene.name.clone()).collect();
         let Some(whole) = reading.description.clone() else { return Err(Error::Model(reading.diagnostics)) };
-        let description = match &asked.scene {
+        let mut description = match &asked.scene {
             None => whole,
             Some(name) => chosen(reading, name)?,
         };
+        if let Some(witness) = &asked.witness {
+            witness.replay(&mut description)?;
+        }
         Ok(Self { origin, asked, description, scenes, warnings })
     }
 
@@ -149,14 +162,6 @@ impl Model {
     pub fn check(&self) -> Result<(), Error> {
         study::ready(&self.description)?;
         Ok(())
-    }
-
-    /// What the model is compiled to: coordinates, instructions of a step, costs of effects, and the reasons.
-    ///
-    /// # Errors
-    /// [`Error::Run`]: it cannot be built or assembled, or a program answers in place of a mechanism.
-    pub fn explain(&self) -> Result<Explanation, Error> {
-        Ok(study::explain(&self.description)?)
     }
 
     /// A study of the model, with the methods that its `bounds:` ask for until others are chosen.

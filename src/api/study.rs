@@ -4,9 +4,10 @@ use super::{Error, Samples, StudyResult};
 use crate::methods::{BoundsRequest, Certified, Chebyshev, Expand, Method, Proof, Scan, Taylor};
 use crate::model::{Description, EXTRAPOLATION_LEVELS, Formulation, SchemeChoice, Stepping};
 use crate::numerics::RangeKind;
-use crate::results::{Allocation, CostStudy, Criterion, DesignStudy, Fit};
+use crate::results::{Allocation, CostStudy, Criterion, DesignStudy, Explanation, Fit};
 use crate::study::{
-    AllocateOptions, CostOptions, DesignOptions, Measurements, NoiseBound, Options, allocate, cost, design, fit, run,
+    AllocateOptions, CostOptions, DesignOptions, Measurements, NoiseBound, Options, allocate, cost, design, explain,
+    fit, run,
 };
 
 /// A run of a model in preparation. Methods add up; the first that is chosen replaces those of the model's `bounds:`.
@@ -230,6 +231,13 @@ impl<'a> Study<'a> {
         self
     }
 
+    /// Calls a function with the current activity, in a few words, whenever it changes.
+    #[must_use]
+    pub fn stage(mut self, stage: &'a (dyn Fn(&str) + Sync)) -> Self {
+        self.options.stage = stage;
+        self
+    }
+
     /// Asks a function now and then whether to stop. The result has the parts finished by then.
     #[must_use]
     pub fn interrupted(mut self, interrupted: &'a (dyn Fn() -> bool + Sync)) -> Self {
@@ -245,6 +253,15 @@ impl<'a> Study<'a> {
             self.wrong.get_or_insert_with(|| message.to_owned());
         }
         self.wrong.take().map_or(Ok(self), |message| Err(Error::Setting(message)))
+    }
+
+    /// What the model is compiled to, with the study's steps and coordinates: coordinates, instructions of a step, costs
+    /// of effects, and the reasons.
+    ///
+    /// # Errors
+    /// [`Error::Run`]: it cannot be built or assembled, or a program answers in place of a mechanism.
+    pub fn explain(self) -> Result<Explanation, Error> {
+        Ok(explain(&self.checked()?.description)?)
     }
 
     /// The cheapest, or loosest, tolerances with which all requirements hold in every case or in a share of the

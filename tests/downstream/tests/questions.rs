@@ -51,7 +51,7 @@ fn bounds_verdicts_and_statistics_of_a_stack_are_those_of_sums() {
 #[test]
 fn a_model_is_checked_and_explained_before_it_runs() {
     stack().check().unwrap();
-    let explanation = stack().explain().unwrap();
+    let explanation = stack().study().explain().unwrap();
     assert_eq!(explanation.coordinates.len(), 1, "{explanation:?}");
     // A bar of 1 m does not reach over 3 m.
     let apart = "
