@@ -25,7 +25,7 @@ enum Origin {
     Text { name: String, text: String },
 }
 
-/// What was asked of the file's model.
+/// Changes of the file's model.
 #[derive(Clone, Debug, Default)]
 struct Asked {
     overrides: Vec<Override>,
@@ -174,7 +174,8 @@ impl Model {
     ///
     /// # Errors
     /// [`Error::Model`]: the model does not have a parameter, or a value does not fit it. [`Error::Run`]: a point is
-    /// costly, and that is not allowed. Another run that fails leaves its point without results.
+    /// costly, and that is not allowed. [`Error::Setting`]: a setting is outside of its range. Another run that fails
+    /// leaves its point without results.
     pub fn sweep(&self, axes: &[Axis], ask: impl Fn(Study<'static>) -> Study<'static>) -> Result<Sweep, Error> {
         let mut sweep = Sweep::new(self.name(), axes);
         for values in Axis::combinations(axes) {

@@ -10,7 +10,8 @@ use crate::study::{
     fit, run,
 };
 
-/// A run of a model in preparation. Methods add up; the first that is chosen replaces those of the model's `bounds:`.
+/// A run of a model in preparation. Methods add up; the first that is chosen replaces those of the model's `bounds:`. A
+/// setting outside of its range is an [`Error::Setting`] of whatever is asked of the study.
 pub struct Study<'a> {
     description: Description,
     options: Options<'a>,
@@ -333,8 +334,7 @@ impl<'a> Study<'a> {
     /// see [`StudyResult::failure`].
     ///
     /// # Errors
-    /// [`Error::Setting`]: a setting is outside of its range. [`Error::Run`]: the mechanism cannot be built, assembled or
-    /// stepped at all, a method would need too many
+    /// [`Error::Run`]: the mechanism cannot be built, assembled or stepped at all, a method would need too many
     /// simulations, or the study is costly and [`allow_costly`](Self::allow_costly) was not called.
     pub fn run(self) -> Result<StudyResult, Error> {
         let own = self.checked()?;

@@ -41,7 +41,7 @@ simulation: { duration: 1 }
 
     #[test]
     fn outputs_that_are_asked_for_stand_in_place_of_the_models() {
-        let model = read(&[("place", "2*bar.x"), ("turn", "bar.angle")], "").description.unwrap();
+        let model = read(&[("place", "bar.x"), ("turn", "bar.angle")], "").description.unwrap();
         let found: Vec<[&str; 2]> = model.outputs.iter().map(|own| [own.name.as_str(), own.unit.as_str()]).collect();
         assert_eq!(found, [["place", "m"], ["turn", "rad"]]);
     }
@@ -49,7 +49,7 @@ simulation: { duration: 1 }
     #[test]
     fn what_is_wrong_with_them_is_reported_in_their_text() {
         for (outputs, message, place) in [
-            ([("x", "bar.x"), ("y", "1 + baz.x")], "unknown body `baz`", (2, 8)),
+            ([("x", "bar.x"), ("y", "1 + baz.x")], "unknown body or joint `baz`", (2, 8)),
             ([("a-b", "bar.x"), ("y", "bar.y")], "`a-b` cannot be the name of an output", (1, 1)),
         ] {
             let record = read(&outputs, "").diagnostics.records().remove(0);
