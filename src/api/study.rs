@@ -256,8 +256,8 @@ impl<'a> Study<'a> {
         self.wrong.take().map_or(Ok(self), |message| Err(Error::Setting(message)))
     }
 
-    /// What the model is compiled to, with the study's steps and coordinates: coordinates, instructions of a step, costs
-    /// of effects, and the reasons.
+    /// What the model is compiled to, with the study's settings: coordinates, instructions of a step, costs of effects,
+    /// and the reasons.
     ///
     /// # Errors
     /// [`Error::Run`]: it cannot be built or assembled, or a program answers in place of a mechanism.

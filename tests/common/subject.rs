@@ -106,8 +106,7 @@ impl Subject {
         self.with(parameter, format!("± {}%", 100.0 * relative))
     }
 
-    /// Chebyshev bounds of the expanded outputs, of this order in every parameter, beside other methods that it is asked
-    /// for.
+    /// Chebyshev bounds of the expanded outputs, of this order in every parameter, beside others.
     pub fn chebyshev(self, order: usize, range: RangeKind) -> Self {
         self.asking(move |study| study.chebyshev(order).range(range))
     }
