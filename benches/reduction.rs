@@ -9,8 +9,7 @@ mod paired;
 
 use std::fmt::Write as _;
 
-use mbint::inner::model::{Description, load_str, read_str};
-use mbint::inner::study::{Options, run};
+use mbint::Model;
 use paired::{Paired, paired};
 
 /// Pairs of runs where the times should be equal, and where they should not.
@@ -29,9 +28,9 @@ fn main() {
     }
 }
 
-fn compare(pairs: usize, name: &str, first: &Description, other_name: &str, other: &Description) {
-    let ran = |description: &Description| {
-        run(description, Options { threads: Some(1), ..Options::default() }).expect("the model runs");
+fn compare(pairs: usize, name: &str, first: &Model, other_name: &str, other: &Model) {
+    let ran = |model: &Model| {
+        model.study().threads(1).allow_costly().run().expect("the model runs");
     };
     let Paired { seconds, ratio: [low, ratio, high] } = paired(pairs, [&|| ran(first), &|| ran(other)]);
     let [first, other] = seconds.map(|seconds| 1e3 * seconds);
@@ -39,7 +38,7 @@ fn compare(pairs: usize, name: &str, first: &Description, other_name: &str, othe
 }
 
 /// The slider crank of Wu, Luo & Zhang, with so many bodies beside it.
-fn slider_crank(more: usize) -> Description {
+fn slider_crank(more: usize) -> Model {
     let text = include_str!("../models/slider_crank.yaml");
     let (mut bodies, mut joints, mut effects) = (String::new(), String::new(), String::new());
     for i in 0..more {
@@ -67,7 +66,7 @@ fn shorter(text: &str) -> String {
 }
 
 /// The slider crank with effects of many kinds, in a scene that leaves them out.
-fn scene_without() -> Description {
+fn scene_without() -> Model {
     let effects = "
   weight: { gravity: { acceleration: [0, -9.81] } }
   coil: { torsional_spring_damper: { on: pivot, stiffness: 0.1 } }
@@ -82,13 +81,11 @@ fn scene_without() -> Description {
     let text = shorter(&text);
     let text =
         format!("{text}\nscenes: {{ bare: {{ without: [weight, coil, rubbing, end, wall, air, rope, pull] }} }}\n");
-    let reading = read_str("slider_crank.yaml", &text, &[]);
-    let scene = reading.scenes.into_iter().next();
-    scene.unwrap_or_else(|| panic!("{}", reading.diagnostics.render(false))).description
+    read("slider_crank.yaml", &text).scene("bare").unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// Pendulums that have nothing to do with one another, the length of each uncertain.
-fn pendulums(count: usize, mixed: &str) -> Description {
+fn pendulums(count: usize, mixed: &str) -> Model {
     let mut text = "model: pendulums\nparameters:\n".to_owned();
     let mut add = |heading: &str, line: &dyn Fn(usize) -> String, last: &str| {
         text += heading;
@@ -105,6 +102,6 @@ fn pendulums(count: usize, mixed: &str) -> Description {
     read("pendulums.yaml", &text)
 }
 
-fn read(name: &str, text: &str) -> Description {
-    load_str(name, text, &[]).unwrap_or_else(|wrong| panic!("{}", wrong.render(false)))
+fn read(name: &str, text: &str) -> Model {
+    Model::from_yaml_str(name, text).unwrap_or_else(|error| panic!("{error}"))
 }

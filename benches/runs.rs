@@ -5,43 +5,46 @@
 mod models;
 
 use divan::{Bencher, bench};
-use mbint::inner::study::{Options, run};
 use mbint::results::Method;
 
 fn main() {
     divan::main();
 }
 
-fn study(bencher: Bencher, methods: Vec<Method>, threads: Option<usize>) {
-    let description = models::slider_crank();
+fn study(bencher: Bencher, methods: &[Method], threads: Option<usize>) {
+    let model = models::slider_crank();
     bencher.bench_local(|| {
-        let options = Options { methods: Some(methods.clone()), threads, ..Options::default() };
-        run(&description, options).expect("the model runs")
+        let study = model.study().methods(methods).allow_costly();
+        let study = match threads {
+            Some(threads) => study.threads(threads),
+            None => study,
+        };
+        study.run().expect("the model runs")
     });
 }
 
 /// The nominal sample and 36 of Chebyshev's.
 #[bench]
 fn chebyshev(bencher: Bencher) {
-    study(bencher, vec![Method::Chebyshev], None);
+    study(bencher, &[Method::Chebyshev], None);
 }
 
 /// The nominal sample and a Taylor polynomial of order 2.
 #[bench]
 fn taylor(bencher: Bencher) {
-    study(bencher, vec![Method::Taylor], None);
+    study(bencher, &[Method::Taylor], None);
 }
 
 /// The nominal sample and a scan of 900.
 #[bench(args = [1, 2])]
 fn scan(bencher: Bencher, threads: usize) {
-    study(bencher, vec![Method::Scan], Some(threads));
+    study(bencher, &[Method::Scan], Some(threads));
 }
 
 /// The nominal sample alone.
 #[bench]
 fn nominal(bencher: Bencher) {
-    study(bencher, vec![], Some(1));
+    study(bencher, &[], Some(1));
 }
 
 /// Reading, building, compiling and assembling the N-four-bar.

@@ -6,7 +6,7 @@ mod models;
 
 use divan::counter::ItemsCount;
 use divan::{Bencher, bench};
-use mbint::inner::model::Description;
+use mbint::Model;
 use models::STEP;
 use symdiff::WIDTHS;
 
@@ -14,8 +14,8 @@ fn main() {
     divan::main();
 }
 
-fn steps(bencher: Bencher, width: usize, description: &Description) {
-    let simulator = models::prepare(description);
+fn steps(bencher: Bencher, width: usize, model: &Model) {
+    let simulator = models::prepare(model);
     let mut stepper = models::stepper(&simulator, width);
     let mut time = 0.0;
     bencher.counter(ItemsCount::new(width)).bench_local(|| {

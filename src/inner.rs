@@ -22,22 +22,22 @@ pub mod elements {
 }
 
 pub mod export {
-    pub use crate::export::{bounds_csv, effects_page, snapshot_table, write_cost};
+    pub use crate::export::{bounds_csv, effects_page, write_cost};
 }
 
 pub mod methods {
-    pub use crate::methods::{BoundsRequest, Budget, Certified, Chebyshev, Degree, Expand, Proof, Scan, Taylor};
+    pub use crate::methods::{BoundsRequest, Chebyshev, Scan, Taylor};
 }
 
 pub mod model {
     pub use crate::model::{
-        Analysis, Description, EffectKind, Formulation, Output, Override, Parameter, ParameterValue, Reading,
-        SchemeChoice, Stepping, Witness, load, load_str, read, read_str, schema,
+        Analysis, Description, EffectKind, Override, ParameterValue, Reading, Stepping, load, load_str, read, read_str,
+        schema,
     };
 }
 
 pub mod numerics {
-    pub use crate::numerics::{RangeKind, Sample};
+    pub use crate::numerics::Sample;
 }
 
 pub mod reduce {
@@ -53,12 +53,10 @@ pub mod simulate {
 }
 
 pub mod study {
-    pub use crate::study::{
-        AllocateOptions, Kept, Options, allocate, explain, language_costs, prepare, ready, run, run_keeping,
-    };
+    pub use crate::study::{Kept, Options, language_costs, prepare, run, run_keeping};
 }
 
 pub mod syntax {
+    pub use crate::syntax::Code;
     pub use crate::syntax::codes::MODEL;
-    pub use crate::syntax::{Code, Diagnostics};
 }

@@ -11,6 +11,10 @@ pub use mbint_study::results;
 #[doc(inline)]
 pub use methods::Method;
 #[doc(inline)]
+pub use model::{Formulation, SchemeChoice};
+#[doc(inline)]
+pub use numerics::RangeKind;
+#[doc(inline)]
 pub use results::{
     Convergence, DerivativeCheck, EffectBalance, Exchange, FormulationVerification, GradientParameter, Gradients,
     OutputGradients, PowerBalance, Quantity, ReducedGradients, SchemeVerification, Summary, Verification,

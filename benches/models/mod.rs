@@ -4,7 +4,7 @@
 
 use std::fmt::Write;
 
-use mbint::inner::model::{Description, load_str};
+use mbint::Model;
 use mbint::inner::simulate::{Simulator, Stepper};
 use mbint::inner::study;
 
@@ -12,13 +12,13 @@ use mbint::inner::study;
 pub const STEP: f64 = 1e-3;
 
 /// The slider crank of Wu, Luo & Zhang.
-pub fn slider_crank() -> Description {
+pub fn slider_crank() -> Model {
     read("slider_crank.yaml", include_str!("../../models/slider_crank.yaml"))
 }
 
 /// The IFToMM benchmark's chain of four-bar loops: 2N+1 uniform bars of 1 m and 1 kg, the upper end of the first moving
 /// at 1 m/s, under gravity.
-pub fn four_bar(loops: usize) -> Description {
+pub fn four_bar(loops: usize) -> Model {
     read("four_bar.yaml", &four_bar_yaml(loops))
 }
 
@@ -57,8 +57,8 @@ pub fn four_bar_yaml(loops: usize) -> String {
 }
 
 /// Compiled and assembled.
-pub fn prepare(description: &Description) -> Simulator {
-    study::prepare(description).unwrap_or_else(|error| panic!("{}: {error}", description.name))
+pub fn prepare(model: &Model) -> Simulator {
+    study::prepare(model.study().description()).unwrap_or_else(|error| panic!("{}: {error}", model.name()))
 }
 
 /// A tile of samples spread over the parameters' intervals, ready to step.
@@ -71,6 +71,6 @@ pub fn stepper(simulator: &Simulator, width: usize) -> Stepper<'_> {
     Stepper::new(&simulator.program, &start)
 }
 
-fn read(name: &str, text: &str) -> Description {
-    load_str(name, text, &[]).unwrap_or_else(|wrong| panic!("{}", wrong.render(false)))
+fn read(name: &str, text: &str) -> Model {
+    Model::from_yaml_str(name, text).unwrap_or_else(|error| panic!("{error}"))
 }

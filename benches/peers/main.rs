@@ -11,7 +11,6 @@ use std::time::Instant;
 
 use mbint::inner::numerics::Sample;
 use mbint::inner::simulate::{EnsembleRun, Integrator, JetBox, Observed, Schedule, Simulator, Steps, jet_integrator};
-use mbint::inner::study;
 use mbint::results::Method;
 use models::STEP;
 use serde_json::{Value, json};
@@ -158,21 +157,17 @@ fn scaling() -> Value {
 
 /// A scan of 900 samples on one and on two threads: seconds.
 fn scan() -> Value {
-    let description = models::slider_crank();
+    let model = models::slider_crank();
     let with = |threads: usize| {
-        let (seconds, bounds) = best(5, || {
-            let options = study::Options {
-                methods: Some(vec![Method::Scan]),
-                threads: Some(threads),
-                ..study::Options::default()
-            };
-            study::run(&description, options).expect("the model runs").0
+        let (seconds, result) = best(5, || {
+            let study = model.study().methods(&[Method::Scan]).threads(threads).allow_costly();
+            study.run().expect("the model runs")
         });
         let ends = |bounds: &mbint::results::Bounds| {
             let bands = bounds.outputs.iter().flat_map(|output| &output.bands);
             bands.flat_map(|band| band.lower.iter().chain(&band.upper)).map(|end| end.to_bits()).collect::<Vec<_>>()
         };
-        (seconds, ends(&bounds))
+        (seconds, ends(result.bounds()))
     };
     let ((one, first), (two, second)) = (with(1), with(2));
     json!({ "one": one, "two": two, "identical": first == second })

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use crate::export::ExportError;
-use crate::model::UnknownScene;
+use crate::model::{UnknownScene, WitnessError};
 use crate::study::{AllocateError, CostError, DataError, DesignError, FitError, GradientError, RunError, VerifyError};
 use crate::syntax::{Code, Coded, Diagnostics};
 
@@ -34,6 +34,12 @@ pub enum Error {
         /// Names of the uncertain parameters, in their order.
         parameters: Vec<String>,
     },
+    /// Functions and values are not those of the model.
+    #[error(transparent)]
+    Witness(#[from] WitnessError),
+    /// A setting of a study, as its time step, is outside of its range.
+    #[error("{0}")]
+    Setting(String),
     /// It was asked to stop before there was a result.
     #[error("interrupted before there were results")]
     Interrupted,
@@ -74,6 +80,8 @@ impl Error {
             Self::Run(error) => error.code(),
             Self::Unsuitable(_) => Some(Code::Unsuitable),
             Self::Cost(error) => error.code(),
+            Self::Witness(error) => error.code(),
+            Self::Setting(_) => Some(Code::OutOfRange),
             Self::Point { .. } => Some(Code::BadOverride),
             Self::Interrupted => None,
             Self::Gradient(error) => error.code(),

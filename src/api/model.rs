@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use super::{Axis, Error, Study, Sweep};
-use crate::model::{Description, Override, ParameterValue, Reading, read_rooted, read_str};
-use crate::results::{Explanation, Gradients, Verification};
+use crate::model::{Changes, Description, Override, ParameterValue, Reading, Witness, read_rooted, read_text};
+use crate::results::{Gradients, Verification};
 use crate::study::{self, Options, RunError};
 use crate::syntax::Diagnostics;
 
@@ -12,9 +12,7 @@ use crate::syntax::Diagnostics;
 #[derive(Clone, Debug)]
 pub struct Model {
     origin: Origin,
-    overrides: Vec<Override>,
-    /// Of the scenes, the one that was chosen.
-    scene: Option<String>,
+    asked: Asked,
     description: Description,
     scenes: Vec<String>,
     warnings: Diagnostics,
@@ -27,13 +25,25 @@ enum Origin {
     Text { name: String, text: String },
 }
 
+/// Changes of the file's model.
+#[derive(Clone, Debug, Default)]
+struct Asked {
+    overrides: Vec<Override>,
+    /// Of the scenes, the one that was chosen.
+    scene: Option<String>,
+    /// Outputs in place of the model's: names and formulas.
+    outputs: Option<Vec<(String, String)>>,
+    /// Functions that its excitations are.
+    witness: Option<Witness>,
+}
+
 impl Model {
     /// Reads a model (`.yaml`) or a robot (`.urdf`).
     ///
     /// # Errors
     /// [`Error::Model`]: everything that is wrong with the file.
     pub fn from_file(path: impl AsRef<Path>) -> Result<Self, Error> {
-        Self::read(Origin::File { path: path.as_ref().to_owned(), root: None }, Vec::new(), None)
+        Self::read(Origin::File { path: path.as_ref().to_owned(), root: None }, Asked::default())
     }
 
     /// Like [`Model::from_file`], where the model may also name files of another folder or below: robots, tables,
@@ -43,7 +53,7 @@ impl Model {
     /// [`Error::Model`]: everything that is wrong with the files.
     pub fn from_file_rooted(path: impl AsRef<Path>, root: impl AsRef<Path>) -> Result<Self, Error> {
         let (path, root) = (path.as_ref().to_owned(), Some(root.as_ref().to_owned()));
-        Self::read(Origin::File { path, root }, Vec::new(), None)
+        Self::read(Origin::File { path, root }, Asked::default())
     }
 
     /// Reads a model from a text. Error messages call it `name`; files that it names are looked for beside `name`.
@@ -51,7 +61,7 @@ impl Model {
     /// # Errors
     /// [`Error::Model`]: everything that is wrong with the text.
     pub fn from_yaml_str(name: &str, text: &str) -> Result<Self, Error> {
-        Self::read(Origin::Text { name: name.to_owned(), text: text.to_owned() }, Vec::new(), None)
+        Self::read(Origin::Text { name: name.to_owned(), text: text.to_owned() }, Asked::default())
     }
 
     /// The same model with another value of a parameter, written as after `--set` on the command line: `"0.16 ± 2%"`,
@@ -61,10 +71,10 @@ impl Model {
     /// [`Error::Model`]: the model does not have the parameter, or the value does not fit it.
     pub fn with(self, parameter: &str, value: impl std::fmt::Display) -> Result<Self, Error> {
         let wanted = Override::parse(&format!("{parameter}={value}"))?;
-        let mut overrides = self.overrides;
-        overrides.retain(|known| known.name != wanted.name);
-        overrides.push(wanted);
-        Self::read(self.origin, overrides, self.scene)
+        let mut asked = self.asked;
+        asked.overrides.retain(|known| known.name != wanted.name);
+        asked.overrides.push(wanted);
+        Self::read(self.origin, asked)
     }
 
     /// One of the model's scenes.
@@ -72,22 +82,44 @@ impl Model {
     /// # Errors
     /// [`Error::Scene`]: the model does not have it.
     pub fn scene(self, name: &str) -> Result<Self, Error> {
-        Self::read(self.origin, self.overrides, Some(name.to_owned()))
+        Self::read(self.origin, Asked { scene: Some(name.to_owned()), ..self.asked })
     }
 
-    fn read(origin: Origin, overrides: Vec<Override>, scene: Option<String>) -> Result<Self, Error> {
+    /// The same model with other outputs than its own, each a name and a formula: `&[("x", "slider.x")]`. A scene with
+    /// outputs has those, too.
+    ///
+    /// # Errors
+    /// [`Error::Model`]: a name or a formula is wrong, or a requirement needs one of the outputs that are left out.
+    pub fn observing(self, outputs: &[(&str, &str)]) -> Result<Self, Error> {
+        let outputs = outputs.iter().map(|&(name, formula)| (name.to_owned(), formula.to_owned())).collect();
+        Self::read(self.origin, Asked { outputs: Some(outputs), ..self.asked })
+    }
+
+    /// The same model with the functions and the values of a witness (`witness.NAME.csv` of a run): its text.
+    ///
+    /// # Errors
+    /// [`Error::Witness`]: it is no witness, or not one of this model.
+    pub fn replaying(self, witness: &str) -> Result<Self, Error> {
+        Self::read(self.origin, Asked { witness: Some(Witness::parse(witness)?), ..self.asked })
+    }
+
+    fn read(origin: Origin, asked: Asked) -> Result<Self, Error> {
+        let changes = Changes { overrides: &asked.overrides, outputs: asked.outputs.as_deref() };
         let reading = match &origin {
-            Origin::File { path, root } => read_rooted(path, &overrides, root.as_deref()),
-            Origin::Text { name, text } => read_str(name, text, &overrides),
+            Origin::File { path, root } => read_rooted(path, changes, root.as_deref()),
+            Origin::Text { name, text } => read_text(name, text, changes),
         };
         let warnings = reading.diagnostics.clone();
         let scenes = reading.scenes.iter().map(|scene| scene.name.clone()).collect();
         let Some(whole) = reading.description.clone() else { return Err(Error::Model(reading.diagnostics)) };
-        let description = match &scene {
+        let mut description = match &asked.scene {
             None => whole,
             Some(name) => chosen(reading, name)?,
         };
-        Ok(Self { origin, overrides, scene, description, scenes, warnings })
+        if let Some(witness) = &asked.witness {
+            witness.replay(&mut description)?;
+        }
+        Ok(Self { origin, asked, description, scenes, warnings })
     }
 
     /// Its name; of a scene, `MODEL/SCENE`.
@@ -113,6 +145,11 @@ impl Model {
         })
     }
 
+    /// How long its motion lasts, s; 0 without a motion.
+    pub fn duration(&self) -> f64 {
+        self.description.simulation.duration
+    }
+
     /// Warnings: the model can be used, but something in it is probably not meant.
     pub fn warnings(&self) -> &Diagnostics {
         &self.warnings
@@ -127,14 +164,6 @@ impl Model {
         Ok(())
     }
 
-    /// What the model is compiled to: coordinates, instructions of a step, costs of effects, and the reasons.
-    ///
-    /// # Errors
-    /// [`Error::Run`]: it cannot be built or assembled, or a program answers in place of a mechanism.
-    pub fn explain(&self) -> Result<Explanation, Error> {
-        Ok(study::explain(&self.description)?)
-    }
-
     /// A study of the model, with the methods that its `bounds:` ask for until others are chosen.
     pub fn study(&self) -> Study<'static> {
         Study::new(self.description.clone())
@@ -145,7 +174,8 @@ impl Model {
     ///
     /// # Errors
     /// [`Error::Model`]: the model does not have a parameter, or a value does not fit it. [`Error::Run`]: a point is
-    /// costly, and that is not allowed. Another run that fails leaves its point without results.
+    /// costly, and that is not allowed. [`Error::Setting`]: a setting is outside of its range. Another run that fails
+    /// leaves its point without results.
     pub fn sweep(&self, axes: &[Axis], ask: impl Fn(Study<'static>) -> Study<'static>) -> Result<Sweep, Error> {
         let mut sweep = Sweep::new(self.name(), axes);
         for values in Axis::combinations(axes) {
@@ -179,12 +209,6 @@ impl Model {
     /// [`Error::Run`]: the mechanism cannot be built; [`Error::Verify`]: its analysis takes no steps.
     pub fn verify(&self) -> Result<Verification, Error> {
         Ok(study::verify(&self.description, &Options::default())?)
-    }
-
-    /// The checked model behind this one.
-    #[doc(hidden)]
-    pub fn description(&self) -> &Description {
-        &self.description
     }
 }
 

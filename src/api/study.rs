@@ -1,24 +1,29 @@
 //! A study: which methods bound a model, and how they run.
 
 use super::{Error, Samples, StudyResult};
-use crate::methods::{BoundsRequest, Certified, Chebyshev, Proof, Scan, Taylor};
-use crate::model::{Description, Stepping};
-use crate::results::{Allocation, CostStudy, Criterion, DesignStudy, Fit};
+use crate::methods::{BoundsRequest, Certified, Chebyshev, Expand, Method, Proof, Scan, Taylor};
+use crate::model::{Description, EXTRAPOLATION_LEVELS, Formulation, SchemeChoice, Stepping};
+use crate::numerics::RangeKind;
+use crate::results::{Allocation, CostStudy, Criterion, DesignStudy, Explanation, Fit};
 use crate::study::{
-    AllocateOptions, CostOptions, DesignOptions, Measurements, NoiseBound, Options, allocate, cost, design, fit, run,
+    AllocateOptions, CostOptions, DesignOptions, Measurements, NoiseBound, Options, allocate, cost, design, explain,
+    fit, run,
 };
 
-/// A run of a model in preparation. Methods add up; the first that is chosen replaces those of the model's `bounds:`.
+/// A run of a model in preparation. Methods add up; the first that is chosen replaces those of the model's `bounds:`. A
+/// setting outside of its range is an [`Error::Setting`] of whatever is asked of the study.
 pub struct Study<'a> {
     description: Description,
     options: Options<'a>,
     /// Whether the methods are no longer the model's.
     chosen: bool,
+    /// The first setting that is outside of its range.
+    wrong: Option<String>,
 }
 
 impl<'a> Study<'a> {
     pub(super) fn new(description: Description) -> Self {
-        Self { description, options: Options { costly: false, ..Options::default() }, chosen: false }
+        Self { description, options: Options { costly: false, ..Options::default() }, chosen: false, wrong: None }
     }
 
     fn choose(&mut self) -> &mut BoundsRequest {
@@ -89,9 +94,45 @@ impl<'a> Study<'a> {
         self
     }
 
+    /// The most simulations that the search for bounds within a tolerance takes.
+    #[must_use]
+    pub fn budget(mut self, simulations: usize) -> Self {
+        self.description.bounds.budget.simulations = simulations;
+        self
+    }
+
+    /// How the ranges of polynomials are found: of those by Taylor, and of those by Chebyshev, which then expands
+    /// outputs in place of coordinates. It is about methods that are chosen already, or else the model's.
+    #[must_use]
+    pub fn range(mut self, range: RangeKind) -> Self {
+        let bounds = &mut self.description.bounds;
+        if let Some(taylor) = &mut bounds.taylor {
+            taylor.range = range;
+        }
+        if let Some(chebyshev) = &mut bounds.chebyshev {
+            (chebyshev.expand, chebyshev.range) = (Expand::Output, range);
+        }
+        self
+    }
+
+    /// These bounding methods only, each as it is asked for already, or else as it is by default.
+    #[must_use]
+    pub fn methods(mut self, methods: &[Method]) -> Self {
+        self.options.methods = Some(methods.to_vec());
+        self
+    }
+
+    /// Notes a setting that is not positive.
+    fn positive(&mut self, what: &str, value: f64) {
+        if !(value > 0.0 && value.is_finite()) {
+            self.wrong.get_or_insert_with(|| format!("{what} must be positive, but is {value}"));
+        }
+    }
+
     /// Another duration, s.
     #[must_use]
     pub fn duration(mut self, seconds: f64) -> Self {
+        self.positive("the duration", seconds);
         self.description.simulation.duration = seconds;
         self
     }
@@ -99,7 +140,59 @@ impl<'a> Study<'a> {
     /// Another fixed time step, s.
     #[must_use]
     pub fn step(mut self, seconds: f64) -> Self {
+        self.positive("the step", seconds);
         self.description.simulation.stepping = Stepping::Fixed(seconds);
+        self
+    }
+
+    /// Time steps of whatever lengths keep their error within a tolerance, relative to the coordinates or to the
+    /// model's size.
+    #[must_use]
+    pub fn step_tolerance(mut self, tolerance: f64) -> Self {
+        self.positive("the tolerance of the steps", tolerance);
+        self.description.simulation.stepping = Stepping::Tolerance(tolerance);
+        self
+    }
+
+    /// Another time between rows of output, s; of fixed steps a multiple of the step.
+    #[must_use]
+    pub fn output_step(mut self, seconds: f64) -> Self {
+        self.positive("the output step", seconds);
+        self.description.simulation.output_step = seconds;
+        self
+    }
+
+    /// Coordinates by which the motion is described.
+    #[must_use]
+    pub fn formulation(mut self, formulation: Formulation) -> Self {
+        self.description.simulation.formulation = formulation;
+        self
+    }
+
+    /// The scheme that integrates the motion.
+    #[must_use]
+    pub fn scheme(mut self, scheme: SchemeChoice) -> Self {
+        self.description.simulation.scheme = scheme;
+        self
+    }
+
+    /// Numerical damping of HHT-I3: α from -1/3, the most, to below 0.
+    #[must_use]
+    pub fn alpha(mut self, alpha: f64) -> Self {
+        if !(-1.0 / 3.0..0.0).contains(&alpha) {
+            self.wrong.get_or_insert_with(|| format!("α = {alpha} is outside [-1/3, 0)"));
+        }
+        self.description.simulation.alpha = alpha;
+        self
+    }
+
+    /// Extrapolation over so many lengths of the steps, 2 to 4, by HHT-I3; 1 for none.
+    #[must_use]
+    pub fn extrapolation(mut self, levels: usize) -> Self {
+        if !EXTRAPOLATION_LEVELS.contains(&levels) && levels != 1 {
+            self.wrong.get_or_insert_with(|| format!("`extrapolation` combines 2, 3 or 4 step lengths, not {levels}"));
+        }
+        self.description.simulation.extrapolation = (levels > 1).then_some(levels);
         self
     }
 
@@ -139,11 +232,37 @@ impl<'a> Study<'a> {
         self
     }
 
+    /// Calls a function with the current activity, in a few words, whenever it changes.
+    #[must_use]
+    pub fn stage(mut self, stage: &'a (dyn Fn(&str) + Sync)) -> Self {
+        self.options.stage = stage;
+        self
+    }
+
     /// Asks a function now and then whether to stop. The result has the parts finished by then.
     #[must_use]
     pub fn interrupted(mut self, interrupted: &'a (dyn Fn() -> bool + Sync)) -> Self {
         self.options.interrupted = interrupted;
         self
+    }
+
+    /// The study, if all settings are within their ranges.
+    fn checked(mut self) -> Result<Self, Error> {
+        let simulation = &self.description.simulation;
+        if simulation.scheme == SchemeChoice::Explicit && simulation.extrapolation.is_some() {
+            let message = "extrapolation is of HHT-I3, but the scheme is explicit";
+            self.wrong.get_or_insert_with(|| message.to_owned());
+        }
+        self.wrong.take().map_or(Ok(self), |message| Err(Error::Setting(message)))
+    }
+
+    /// What the model is compiled to, with the study's settings: coordinates, instructions of a step, costs of effects,
+    /// and the reasons.
+    ///
+    /// # Errors
+    /// [`Error::Run`]: it cannot be built or assembled, or a program answers in place of a mechanism.
+    pub fn explain(self) -> Result<Explanation, Error> {
+        Ok(explain(&self.checked()?.description)?)
     }
 
     /// The cheapest, or loosest, tolerances with which all requirements hold in every case or in a share of the
@@ -153,11 +272,12 @@ impl<'a> Study<'a> {
     /// [`Error::Unsuitable`]: the model has no requirement, or no tolerance that may change. [`Error::Run`]: it cannot
     /// be run.
     pub fn allocate(self, criterion: Criterion, widest: f64) -> Result<Allocation, Error> {
+        let own = self.checked()?;
         let share = match criterion {
             Criterion::WorstCase => None,
             Criterion::Share(share) => Some(share),
         };
-        Ok(allocate(&self.description, AllocateOptions { share, widest }, &self.options)?)
+        Ok(allocate(&own.description, AllocateOptions { share, widest }, &own.options)?)
     }
 
     /// The parameters that agree with measured values. `data` is a table: a heading with `time` and names of outputs,
@@ -168,10 +288,11 @@ impl<'a> Study<'a> {
     /// [`Error::Data`]: the table or a bound cannot be used. [`Error::Fit`]: no parameter is uncertain, or the model
     /// cannot be run over its box.
     pub fn fit(self, data: &str, noise: &[(&str, &str)]) -> Result<Fit, Error> {
+        let own = self.checked()?;
         let bound = |own: &(&str, &str)| NoiseBound { output: own.0.to_owned(), value: own.1.to_owned() };
         let noise: Vec<NoiseBound> = noise.iter().map(bound).collect();
-        let measurements = Measurements::read(data, &self.description, &noise)?;
-        Ok(fit(&self.description, &measurements, &self.options)?)
+        let measurements = Measurements::read(data, &own.description, &noise)?;
+        Ok(fit(&own.description, &measurements, &own.options)?)
     }
 
     /// The nominal values, within the ranges of the model's `design`, that are best in its `objective` with the
@@ -181,11 +302,12 @@ impl<'a> Study<'a> {
     /// [`Error::Unsuitable`]: the model has no `design`. [`Error::Run`]: it cannot be run. [`Error::Design`]: its
     /// margins have no surrogate over any part of the ranges.
     pub fn design(self, criterion: Criterion) -> Result<DesignStudy, Error> {
+        let own = self.checked()?;
         let share = match criterion {
             Criterion::WorstCase => None,
             Criterion::Share(share) => Some(share),
         };
-        Ok(design(&self.description, DesignOptions { share }, &self.options)?)
+        Ok(design(&own.description, DesignOptions { share }, &own.options)?)
     }
 
     /// Outputs over time at points: for each a value, SI, of each of [`Model::uncertain`](super::Model::uncertain).
@@ -193,7 +315,8 @@ impl<'a> Study<'a> {
     /// # Errors
     /// [`Error::Point`]: a point has too few or too many values. [`Error::Run`]: the mechanism cannot be stepped.
     pub fn sample(self, points: &[Vec<f64>]) -> Result<Samples, Error> {
-        Samples::of(&self.description, points, &self.options)
+        let own = self.checked()?;
+        Samples::of(&own.description, points, &own.options)
     }
 
     /// What accuracy costs in time: settings of all methods, their errors against a reference, and the cheapest for an
@@ -202,8 +325,9 @@ impl<'a> Study<'a> {
     /// # Errors
     /// [`Error::Run`]: the model cannot be run. [`Error::Cost`]: a reference takes too long.
     pub fn cost(self, tolerance: f64, budget: f64) -> Result<CostStudy, Error> {
-        let Options { threads, progress, interrupted, .. } = self.options;
-        Ok(cost(&self.description, &CostOptions { tolerance, budget, threads, progress, interrupted })?)
+        let own = self.checked()?;
+        let Options { threads, progress, interrupted, .. } = own.options;
+        Ok(cost(&own.description, &CostOptions { tolerance, budget, threads, progress, interrupted })?)
     }
 
     /// Runs every method. A simulation that fails on its way ends the bounds that need it there:
@@ -213,7 +337,14 @@ impl<'a> Study<'a> {
     /// [`Error::Run`]: the mechanism cannot be built, assembled or stepped at all, a method would need too many
     /// simulations, or the study is costly and [`allow_costly`](Self::allow_costly) was not called.
     pub fn run(self) -> Result<StudyResult, Error> {
-        let (bounds, summary) = run(&self.description, self.options)?;
+        let own = self.checked()?;
+        let (bounds, summary) = run(&own.description, own.options)?;
         Ok(StudyResult::new(bounds, summary))
+    }
+
+    /// The checked model that is run.
+    #[doc(hidden)]
+    pub fn description(&self) -> &Description {
+        &self.description
     }
 }

@@ -9,7 +9,7 @@ use super::console::{BOLD, Console, coordinates, count, to_json};
 use super::load::Given;
 use super::tuning::TUNING;
 use super::{Failure, Status, load, structure, tree};
-use crate::model::{self, Description};
+use crate::model::{self, Changes, Description};
 use crate::results::{AssemblySummary, Structure};
 use crate::simulate::Assembled;
 use crate::study::{self, Ready, RunError};
@@ -164,7 +164,7 @@ pub(super) fn check(args: &CheckArgs, console: &mut Console) -> Result<Status, F
 }
 
 fn check_one(path: &Path, given: &Given) -> Checked {
-    let reading = model::read_rooted(path, &given.overrides, given.root.as_deref());
+    let reading = model::read_rooted(path, Changes::of(&given.overrides), given.root.as_deref());
     let (diagnostics, found) = (reading.diagnostics.records(), reading.diagnostics.clone());
     let read = Checked { diagnostics, found, ..Checked::nothing(path) };
     let read = Checked { tree: reading.description.as_ref().map(tree::of).unwrap_or_default(), ..read };

@@ -5,7 +5,7 @@ use std::rc::Rc;
 
 use super::Failure;
 use super::console::Console;
-use crate::model::{self, Description, Override, Reading, Witness};
+use crate::model::{self, Changes, Description, Override, Reading, Witness};
 use crate::results::ModelFile;
 use crate::study;
 use crate::syntax::Coded;
@@ -112,7 +112,7 @@ pub(super) fn input_once(models: &[PathBuf]) -> Result<(), Failure> {
 
 /// Reads a file and reports its errors and warnings; `None` if it has errors.
 fn read(path: &Path, given: &Given, console: &Console) -> Option<Reading> {
-    let mut reading = model::read_rooted(path, &given.overrides, given.root.as_deref());
+    let mut reading = model::read_rooted(path, Changes::of(&given.overrides), given.root.as_deref());
     console.diagnostics(&reading.diagnostics);
     if let Some(witness) = &given.witness {
         let scenes = reading.scenes.iter_mut().map(|scene| &mut scene.description);

@@ -14,7 +14,7 @@ use super::snapshot::moves;
 use super::tuning::TUNING;
 use super::{Failure, Status, interrupt};
 use crate::export::{Snapshot, moved, snapshot_table};
-use crate::model::{self, is_standard_input};
+use crate::model::{self, Changes, is_standard_input};
 
 /// Tells whether a file is as it was: when it was written, and its length; `None` where there is none.
 type Mark = Option<(SystemTime, u64)>;
@@ -94,7 +94,7 @@ fn settle(request: &Request) {
 fn marks(request: &Request) -> BTreeMap<PathBuf, Mark> {
     let mut marks = BTreeMap::new();
     for path in &request.models {
-        let reading = model::read_rooted(path, &request.given.overrides, request.given.root.as_deref());
+        let reading = model::read_rooted(path, Changes::of(&request.given.overrides), request.given.root.as_deref());
         let named = reading.diagnostics.sources.all().map(|source| PathBuf::from(&source.name));
         // The texts of the command line are no files.
         let named = named.filter(|path| path.is_file()).chain([path.clone()]);

@@ -5,7 +5,7 @@
 
 use mbint::results::Bounds;
 
-use super::{Findings, Vary, curve, largest, measured, nominal, read, row, rows, third_party};
+use super::{Findings, curve, largest, measured, nominal, read, row, rows, third_party};
 
 /// A joint `j` or an effect `s` that carries a body `a`.
 pub struct Case {

@@ -1,9 +1,8 @@
 //! Assertions that an output has a closed form.
 
-use mbint::inner::model::Description;
 use mbint::results::Bounds;
 
-use super::{Vary, curve, distance_from, nominal, order, richardson};
+use super::{Subject, curve, distance_from, nominal, order, richardson};
 
 /// Rounding over a thousand steps, with numbers of size 1 to 100.
 const ROUNDING: f64 = 1e-10;
@@ -28,7 +27,7 @@ pub fn assert_exact_force(bounds: &Bounds, name: &str, exact: impl Fn(f64) -> f6
 
 /// Asserts second order, and that the extrapolation at step h has errors below `limit`.
 #[track_caller]
-pub fn assert_converges(description: &Description, h: f64, name: &str, limit: f64, exact: impl Fn(f64) -> f64) {
+pub fn assert_converges(description: &Subject, h: f64, name: &str, limit: f64, exact: impl Fn(f64) -> f64) {
     let [coarse, fine] = [h, 0.5 * h].map(|h| nominal(&description.clone().step(h)));
     let errors = [&coarse, &fine].map(|run| distance_from(&run.times, curve(run, name), &exact));
     let extrapolated = richardson(curve(&coarse, name), curve(&fine, name));

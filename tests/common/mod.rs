@@ -10,16 +10,15 @@ pub mod random;
 pub mod registry;
 pub mod restitution;
 pub mod runge_kutta;
+mod subject;
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-use mbint::inner::methods::{Chebyshev, Expand, Scan};
-use mbint::inner::model::{self, Description, Output, ParameterValue, SchemeChoice, Stepping};
-use mbint::inner::numerics::RangeKind;
-use mbint::inner::study::{self, Options};
 use mbint::results::{Band, Bounds, Method, OutputBounds, Summary};
 use mbint::{Model, Study};
+
+pub use subject::Subject;
 
 /// The files of `models/`, in alphabetical order.
 pub fn model_files() -> Vec<PathBuf> {
@@ -36,30 +35,40 @@ pub fn model_files() -> Vec<PathBuf> {
 
 /// The model of this name in `models/`.
 #[track_caller]
-pub fn model(name: &str) -> Description {
+pub fn model(name: &str) -> Subject {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("models").join(name).with_extension("yaml");
     load(&path)
 }
 
 #[track_caller]
-pub fn load(path: &Path) -> Description {
-    model::load(path, &[]).unwrap_or_else(|diagnostics| panic!("{diagnostics}"))
+pub fn load(path: &Path) -> Subject {
+    Model::from_file(path).unwrap_or_else(|error| panic!("{error}")).into()
 }
 
 /// What `mbint run` runs of a file: its scenes or, where it has none, the model itself.
 #[track_caller]
-pub fn load_all(path: &Path) -> Vec<Description> {
-    let reading = model::read(path, &[]);
-    let report = reading.diagnostics.clone();
-    let chosen = reading.chosen(&[]).unwrap();
-    assert!(!chosen.is_empty(), "{report}");
-    chosen.into_iter().map(|(_, description)| description).collect()
+pub fn load_all(path: &Path) -> Vec<Subject> {
+    let whole = load(path);
+    let scene = |name: &str| whole.model.clone().scene(name).unwrap_or_else(|error| panic!("{error}")).into();
+    let scenes: Vec<Subject> = whole.model.scenes().map(scene).collect();
+    if scenes.is_empty() { vec![whole] } else { scenes }
 }
 
 /// A model from text.
 #[track_caller]
-pub fn read(text: &str) -> Description {
-    model::load_str("test", text, &[]).unwrap_or_else(|diagnostics| panic!("{diagnostics}"))
+pub fn read(text: &str) -> Subject {
+    model_of(text).into()
+}
+
+/// A model from text whose parameters stand in the opposite order, each on a line.
+#[track_caller]
+pub fn with_reversed_parameters(text: &str) -> Subject {
+    let (before, section) = text.split_once("\nparameters:\n").unwrap();
+    let end = section.split_inclusive('\n').take_while(|line| line.starts_with(' ')).map(str::len).sum();
+    let (own, after) = section.split_at(end);
+    let lines: Vec<&str> = own.lines().rev().collect();
+    assert!(lines.len() > 1, "{own}");
+    read(&format!("{before}\nparameters:\n{}\n{after}", lines.join("\n")))
 }
 
 /// A model from text, as users of the library have it.
@@ -87,116 +96,24 @@ pub fn refused(text: &str) -> String {
     study_of(text).run().expect_err("it cannot be run").to_string()
 }
 
-/// Runs what the model asks for; nothing may fail.
+/// Runs what is asked for; nothing may fail.
 #[track_caller]
-pub fn run(description: &Description) -> Bounds {
-    run_methods(description, None).0
+pub fn run(subject: &Subject) -> Bounds {
+    run_methods(subject, None).0
 }
 
 /// Runs the nominal sample only.
 #[track_caller]
-pub fn nominal(description: &Description) -> Bounds {
-    run_methods(description, Some(Vec::new())).0
+pub fn nominal(subject: &Subject) -> Bounds {
+    run_methods(subject, Some(Vec::new())).0
 }
 
+/// Runs these methods, or those that are asked for; nothing may fail.
 #[track_caller]
-pub fn run_methods(description: &Description, methods: Option<Vec<Method>>) -> (Bounds, Summary) {
-    let options = Options { methods, threads: Some(2), ..Options::default() };
-    let (bounds, summary) =
-        study::run(description, options).unwrap_or_else(|error| panic!("{}: {error}", description.name));
-    assert_eq!(summary.failure, None, "{}", description.name);
+pub fn run_methods(subject: &Subject, methods: Option<Vec<Method>>) -> (Bounds, Summary) {
+    let (bounds, summary) = subject.finished(methods);
+    assert_eq!(summary.failure, None, "{}", subject.name());
     (bounds, summary)
-}
-
-/// Changes to a description, for tests that vary one thing.
-pub trait Vary {
-    fn step(self, h: f64) -> Self;
-    fn duration(self, duration: f64) -> Self;
-    /// Its own duration, but at most this.
-    fn at_most(self, duration: f64) -> Self;
-    /// A row of output after every this many seconds.
-    fn rows_every(self, output_step: f64) -> Self;
-    fn tolerance(self, tolerance: f64) -> Self;
-    /// Integrated by HHT-I3, whatever would be cheaper.
-    fn by_hht(self) -> Self;
-    /// These outputs instead of the model's.
-    fn observing(self, formulas: &[&str]) -> Self;
-    /// An uncertain parameter's interval, relative to its nominal value.
-    fn uncertain(self, parameter: &str, relative: f64) -> Self;
-    /// Chebyshev bounds of the expanded outputs only, of this order in every parameter.
-    fn chebyshev(self, order: usize, range: RangeKind) -> Self;
-    /// A scan only.
-    fn scan(self, points: usize) -> Self;
-}
-
-impl Vary for Description {
-    fn step(mut self, h: f64) -> Self {
-        self.simulation.stepping = Stepping::Fixed(h);
-        self
-    }
-
-    fn duration(mut self, duration: f64) -> Self {
-        self.simulation.duration = duration;
-        self
-    }
-
-    fn at_most(mut self, duration: f64) -> Self {
-        self.simulation.duration = self.simulation.duration.min(duration);
-        self
-    }
-
-    fn rows_every(mut self, output_step: f64) -> Self {
-        self.simulation.output_step = output_step;
-        self
-    }
-
-    fn tolerance(mut self, tolerance: f64) -> Self {
-        self.simulation.stepping = Stepping::Tolerance(tolerance);
-        self
-    }
-
-    fn by_hht(mut self) -> Self {
-        self.simulation.scheme = SchemeChoice::Hht;
-        self
-    }
-
-    fn observing(mut self, formulas: &[&str]) -> Self {
-        let output = |formula: &&str| Output {
-            name: (*formula).to_owned(),
-            formula: symdiff::Formula::parse(formula).unwrap(),
-            unit: String::new(),
-            dimension: None,
-            of_results: false,
-        };
-        self.outputs = formulas.iter().map(output).collect();
-        self
-    }
-
-    fn uncertain(mut self, parameter: &str, relative: f64) -> Self {
-        let found = self.parameters.iter_mut().find(|known| known.name == parameter).unwrap();
-        let ParameterValue::Interval { nominal, .. } = found.value else { panic!("{parameter} is deterministic") };
-        let half = relative * nominal.abs();
-        found.value = ParameterValue::Interval { nominal, lower: nominal - half, upper: nominal + half };
-        self
-    }
-
-    fn chebyshev(mut self, order: usize, range: RangeKind) -> Self {
-        let order = Chebyshev::of_order(order, uncertain_count(&self));
-        let request = Chebyshev { expand: Expand::Output, range, ..order };
-        self.bounds = mbint::inner::methods::BoundsRequest { chebyshev: Some(request), ..Default::default() };
-        self
-    }
-
-    fn scan(mut self, points: usize) -> Self {
-        let request = Scan::of_points(points, uncertain_count(&self));
-        self.bounds = mbint::inner::methods::BoundsRequest { scan: Some(request), ..Default::default() };
-        self
-    }
-}
-
-pub fn uncertain_count(description: &Description) -> usize {
-    let uncertain = |parameter: &&model::Parameter| matches!(parameter.value, ParameterValue::Interval { .. });
-    description.parameters.iter().filter(uncertain).count()
 }
 
 /// An output by its name.

@@ -1,14 +1,13 @@
 //! Beams against the textbook: deflections, the elastica, and natural frequencies.
 
-use mbint::inner::model::Description;
 use mbint::results::Bounds;
 
 use crate::common::power::{APART, assert_balance, pair};
-use crate::common::{curve, nominal, order, read};
+use crate::common::{Subject, curve, nominal, order, read};
 
 /// A cantilever of N elements along x, of length 1, EI = 1, mass and rotational inertia lumped at its nodes; `load`
 /// acts at its tip.
-fn cantilever(elements: usize, mass: f64, tip_mass: f64, damping: f64, load: &str, run: &str) -> Description {
+fn cantilever(elements: usize, mass: f64, tip_mass: f64, damping: f64, load: &str, run: &str) -> Subject {
     let h = 1.0 / elements as f64;
     let (mut bodies, mut beams, mut start) = (String::new(), String::new(), String::new());
     for node in 1..=elements {

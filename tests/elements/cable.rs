@@ -1,7 +1,7 @@
 //! Cables: a fall into a rope.
 
 use crate::common::power::{APART, APART_IN_SPACE, assert_balance, pair, spatial_pair};
-use crate::common::{Vary, curve, distance_from, largest, nominal, read, row};
+use crate::common::{curve, distance_from, largest, nominal, read, row};
 
 /// A jumper on a rope: free fall, then the rope: at the lowest point m g (ℓ₀ + x) = ½ k x², and back to where he was.
 #[test]

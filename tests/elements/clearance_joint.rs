@@ -1,13 +1,12 @@
 //! A slider crank whose wrist pin is loose by 0.1 mm: stable, convergent, and within its clearance of the ideal one.
 
-use mbint::inner::model::Description;
 use mbint::results::Method;
 
 use crate::common::power::{APART, assert_balance, pair};
-use crate::common::{Vary, band, curve, distance, largest, nominal, output, read, row, run, study_of};
+use crate::common::{Subject, band, curve, distance, largest, nominal, output, read, row, run, study_of};
 
 /// `wrist` is the joint or the effect between rod and slider; it starts centred, with the ideal mechanism's velocities.
-fn slider_crank(joint: &str, effect: &str, start: &str) -> Description {
+fn slider_crank(joint: &str, effect: &str, start: &str) -> Subject {
     read(&format!(
         "
 parameters:
@@ -39,11 +38,11 @@ bounds: {{ scan: {{ points: 3 }} }}
     ))
 }
 
-fn ideal() -> Description {
+fn ideal() -> Subject {
     slider_crank("  wrist: { revolute: [slider, rod.C] }", "", "initial: {}")
 }
 
-fn loose(friction: &str) -> Description {
+fn loose(friction: &str) -> Subject {
     let wrist = format!(
         "  wrist:
     clearance_joint:

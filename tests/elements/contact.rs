@@ -1,12 +1,11 @@
 //! Contacts, stops and loose joints, against the mechanics of impact.
 
 use crate::common::power::{APART, assert_balance, pair};
-use crate::common::{Vary, curve, distance_from, largest, nominal, order, read, row};
+use crate::common::{Subject, curve, distance_from, largest, nominal, order, read, row};
 use crate::common::restitution::restitution;
-use mbint::inner::model::Description;
 use mbint::results::Bounds;
 
-fn ball(impact: &str) -> Description {
+fn ball(impact: &str) -> Subject {
     read(&format!(
         "
 bodies:

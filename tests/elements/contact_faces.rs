@@ -2,8 +2,6 @@
 
 use crate::common::{curve, largest, nominal, read};
 use mbint::results::Bounds;
-use mbint::inner::study::prepare;
-
 const DAMPED: &str = "impact: { stiffness: 1e5, exponent: 1, dissipation: 20 }, friction: { coefficient: 0.9, transition_velocity: 2e-3 }";
 const UPRIGHT: &str = "cylinder: [[0, 0, -0.25], [0, 0, 0.25]], radius: 0.1";
 const LYING: &str = "cylinder: [[0, -0.25, 0], [0, 0.25, 0]], radius: 0.1";
@@ -297,8 +295,9 @@ simulation: {{ duration: 0.1, step: 1e-3 }}
         ))
     };
     let iteration = |effect: &str| {
-        let simulator = prepare(&model(effect)).unwrap();
-        [false, true].map(|active| simulator.program.correct().len_where(active))
+        let explained = model(effect).study().explain().unwrap();
+        let active = explained.instructions.correct;
+        [explained.inactive.map_or(active, |counts| counts.correct), active]
     };
     let [bare, _] = iteration("");
     for surface in ["circle: 0.1", "capsule: [[0, 0, 0], [1, 0, 0]], rounding: 0.1", SLAB, SLAB_AS_HULL] {

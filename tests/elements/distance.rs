@@ -2,7 +2,7 @@
 
 use crate::common::power::{assert_balance, pair, spatial_pair};
 use crate::common::adams::{Case, compared_with_adams};
-use crate::common::{Vary, curve, distance_from, nominal, order, read};
+use crate::common::{curve, distance_from, nominal, order, read};
 
 /// A bob on a string goes round at ω² = g / (L cos 30°), also where it only turns about z, and as a whole body.
 #[test]

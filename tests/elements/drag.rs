@@ -1,7 +1,7 @@
 //! Drag: fall through a fluid.
 
 use crate::common::power::{APART, assert_balance, pair};
-use crate::common::{Vary, curve, distance_from, nominal, order, read};
+use crate::common::{curve, distance_from, nominal, order, read};
 
 /// A body that falls through a fluid: v = v_T tanh(g t/v_T), v_T² = 2 m g/(ρ c_d A).
 #[test]

@@ -1,9 +1,9 @@
 //! The examples in the documentation of joints are run. (Those of effects are run where their costs are counted.)
 
-use mbint::inner::elements::JointKind;
-use mbint::inner::model::{self, Description};
+use mbint::Model;
 
-use crate::common::nominal;
+use crate::common::registry::joints;
+use crate::common::{Subject, nominal};
 
 /// What the examples of joints name, each body by itself.
 const MECHANISM: &str = "
@@ -43,23 +43,23 @@ simulation: { duration: 0.02, step: 1e-3 }
 ";
 
 /// The example in the plane or else in space.
-fn with(keyword: &str, example: &str) -> Description {
+fn with(keyword: &str, example: &str) -> Subject {
     let text = MECHANISM.replace("KEYWORD", keyword).replace("EXAMPLE", example);
     let read = |space: &str, thread: &str| {
-        model::load_str("example", &text.replace("SPACE", space).replace("THREAD", thread), &[])
+        Model::from_yaml_str("example", &text.replace("SPACE", space).replace("THREAD", thread))
     };
     read("planar", "[ground.beside, spindle]")
         .or_else(|_| read("spatial", "{ between: [ground.beside, spindle], axis: x }"))
-        .unwrap_or_else(|wrong| panic!("{keyword}: {}", wrong.render(false)))
+        .unwrap_or_else(|wrong| panic!("{keyword}: {wrong}"))
+        .into()
 }
 
 #[test]
 fn every_example_of_a_joint_is_run() {
-    let docs = JointKind::docs();
-    assert!(docs.len() >= 16);
-    for joint in docs {
-        let keyword = joint.element.keyword;
-        let bounds = nominal(&with(keyword, joint.element.example));
+    let examples = joints();
+    assert!(examples.len() >= 16);
+    for (keyword, example) in examples {
+        let bounds = nominal(&with(keyword, &example));
         assert!(bounds.outputs[0].nominal.iter().all(|energy| energy.is_finite()), "{keyword}");
     }
 }

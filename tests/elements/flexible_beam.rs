@@ -3,15 +3,14 @@
 use std::f64::consts::PI;
 
 use mbint::inner::assemble;
-use mbint::inner::model::Description;
 use mbint::results::{Bounds, Method};
 use nalgebra::DMatrix;
 
-use crate::common::{Vary, band, curve, distance_from, largest, nominal, order, output, read, richardson, run};
+use crate::common::{Subject, band, curve, distance_from, largest, nominal, order, output, read, richardson, run};
 use crate::common::runge_kutta::runge_kutta;
 
 /// A beam of length 1 with EI = 1 that is clamped at its start.
-fn cantilever(elements: usize, mass: f64, axial: f64, damping: f64, load: &str, run: &str) -> Description {
+fn cantilever(elements: usize, mass: f64, axial: f64, damping: f64, load: &str, run: &str) -> Subject {
     read(&format!(
         "
 bodies:
@@ -148,7 +147,7 @@ outputs: {{ x: rod.end.x }}
 simulation: {{ duration: 1, step: 0.1 }}
 "
     ));
-    let system = assemble::build(&assemble::Questions::of(&description)).unwrap();
+    let system = assemble::build(&assemble::Questions::of(description.study().description())).unwrap();
     let mut g = system.graph.clone();
     let slopes = g.jacobian(&system.force, &system.q);
     let value = |symbol| {
@@ -369,7 +368,7 @@ fn instructions_grow_with_the_elements() {
     let weight = "{ gravity: { acceleration: [0, -9.81] } }";
     let instructions = [8, 16, 32].map(|elements| {
         let description = cantilever(elements, 1.0, 1e4, 0.0, weight, "duration: 1");
-        let simulator = mbint::inner::study::prepare(&description).unwrap();
+        let simulator = mbint::inner::study::prepare(description.study().description()).unwrap();
         simulator.program.factor().len() + simulator.program.correct().len()
     });
     println!("{instructions:?}");
@@ -406,7 +405,7 @@ simulation: {{ duration: 0.5, step: 1e-3, output_step: 1e-3 }}
     let around = (750.0 * period) as usize..(1250.0 * period) as usize;
     let back = around.max_by(|&a, &b| y[a].total_cmp(&y[b])).unwrap();
     assert!((back as f64 * 1e-3 / period - 1.0).abs() < 0.03, "{back} {period}");
-    let failure = mbint::inner::study::run(&clamped(0.99), mbint::inner::study::Options::default()).unwrap_err().to_string();
+    let failure = clamped(0.99).refused();
     println!("{failure}");
     assert!(failure.contains("beam `rod` (it starts straight unless `initial` gives all coordinates of all its nodes)"));
 }
@@ -416,7 +415,7 @@ simulation: {{ duration: 0.5, step: 1e-3, output_step: 1e-3 }}
 fn a_beam_has_absolute_coordinates() {
     let run = "duration: 1, formulation: joint";
     let description = cantilever(1, 1.0, 1e4, 0.0, "{ gravity: { acceleration: [0, -9.81] } }", run);
-    let failure = assemble::build(&assemble::Questions::of(&description)).unwrap_err().to_string();
+    let failure = description.unbuilt();
     assert!(failure.contains("beam `rod` bends"), "{failure}");
 }
 

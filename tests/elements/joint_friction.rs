@@ -6,7 +6,7 @@ use mbint::results::Method;
 
 use crate::common::power::{assert_balance, pair};
 use crate::common::{
-    Findings, Vary, band, curve, distance, distance_from, largest, nominal, output, read, richardson, row, run,
+    Findings, band, curve, distance, distance_from, largest, nominal, output, read, richardson, row, run,
 };
 
 /// On a slope: s̈ = g (sin β − μ cos β), down and up.

@@ -1,7 +1,7 @@
 //! Motors whose speed follows a state or a position, against closed forms and motors that are prescribed.
 
-use mbint::inner::model::Formulation;
 use mbint::results::{Bounds, Method};
+use mbint::Formulation;
 
 use crate::common::power::{assert_balance, pair, spatial_pair};
 use crate::common::{band, curve, distance, distance_from, nominal, output, read, refused, run};
@@ -54,8 +54,7 @@ fn off(bounds: &Bounds, name: &str, wanted: impl Fn(f64) -> f64) -> f64 {
 fn a_pendulum_follows_a_speed_behind_a_lag() {
     for formulation in [Formulation::Absolute, Formulation::Joint] {
         for (simulation, of_motion, of_forces) in WAYS {
-            let mut description = read(&pendulum(simulation));
-            description.simulation.formulation = formulation;
+            let description = read(&pendulum(simulation)).formulation(formulation);
             let bounds = nominal(&description);
             for (name, off, allowed) in [
                 ("angle", off(&bounds, "angle", |t| angle(0.2, t)), of_motion),

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use crate::common::power::{assert_balance, pair};
-use crate::common::{Vary, largest, model, nominal};
+use crate::common::{largest, model, nominal};
 
 #[test]
 fn the_yoke_is_where_the_pin_is() {

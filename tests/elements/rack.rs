@@ -1,9 +1,9 @@
 //! Racks, with a gear before them.
 
-use mbint::inner::model::Formulation;
+use mbint::Formulation;
 
 use crate::common::power::assert_balance;
-use crate::common::{Vary, curve, distance_from, largest, nominal, order, read};
+use crate::common::{curve, distance_from, largest, nominal, order, read};
 
 /// Two wheels on skew axles and a rack: (J₁ + r² J₂ + R² m) φ̈ = τ.
 #[test]
@@ -38,8 +38,7 @@ simulation: { duration: 1, step: 2e-3, output_step: 0.1, formulation: absolute }
     println!("angle {errors:?}");
     assert!(order(errors[0], errors[1]) > 1.9 && errors[1] < 1e-4, "{errors:?}");
     // The joints' own angles speed up evenly: nothing is left to be approximated.
-    let mut own = description;
-    own.simulation.formulation = Formulation::Joint;
+    let own = description.formulation(Formulation::Joint);
     let own = nominal(&own);
     assert!(distance_from(&own.times, curve(&own, "first"), angle) < 1e-12);
     let fine = &runs[1];

@@ -1,12 +1,12 @@
 //! Revolute joints: reactions of a rod at rest and of a spinning one, and MSC Adams.
 
-use mbint::inner::model::Formulation;
 use mbint::results::Bounds;
+use mbint::Formulation;
 
 use crate::common::power::{assert_balance, pair, spatial_pair};
 use crate::common::adams::{Case, compared_with_adams};
 use crate::common::closed_forms::{assert_converges, assert_exact_force};
-use crate::common::{Vary, curve, distance_from, nominal, order, read, row};
+use crate::common::{curve, distance_from, nominal, order, read, row};
 
 #[test]
 fn a_rod_at_rest_hangs_by_its_weight() {
@@ -61,8 +61,7 @@ simulation: { duration: 2, step: 1e-3, output_step: 0.01, formulation: absolute 
         assert!(errors[0] < 1e-4 * pull, "{name}: {errors:?}");
     }
     // The hinge's own angle grows evenly: nothing is left to be approximated.
-    let mut own = description;
-    own.simulation.formulation = Formulation::Joint;
+    let own = description.formulation(Formulation::Joint);
     let run = nominal(&own);
     for (name, exact) in [("x", &x as &dyn Fn(f64) -> f64), ("y", &y)] {
         assert!(distance_from(&run.times, curve(&run, name), exact) < 1e-9 * pull, "{name} in joint coordinates");

@@ -1,10 +1,10 @@
 //! Wheels that roll: on a slope, on a plank that slides, on a lever that rocks.
 
-use mbint::inner::model::Formulation;
 use mbint::results::Method;
+use mbint::Formulation;
 
 use crate::common::power::{assert_balance, pair};
-use crate::common::{Vary, band, curve, distance_from, largest, nominal, order, output, read, run};
+use crate::common::{band, curve, distance_from, largest, nominal, order, output, read, run};
 
 /// s̈ = g sin α/(1 + J/(m r²)), with the reactions m g cos α and J s̈/r².
 #[test]
@@ -25,8 +25,7 @@ bounds: { chebyshev: { order: 5 } }
     // Where the angle is 0.3 the wheel is r 0.3 before the place that the offset says.
     let way = |inertia: f64, t: f64| 0.05 - 0.1 * 0.3 + 0.5 * acceleration(inertia) * t * t;
     for formulation in [Formulation::Absolute, Formulation::Auto] {
-        let mut description = description.clone();
-        description.simulation.formulation = formulation;
+        let description = description.clone().formulation(formulation);
         let bounds = run(&description);
         let off = |name: &str, wanted: &dyn Fn(f64) -> f64| distance_from(&bounds.times, curve(&bounds, name), wanted);
         assert!(off("x", &|t| 0.8 * way(0.02, t) + 0.6 * 0.1) < 1e-10);

@@ -1,12 +1,11 @@
 //! Balls and discs that roll on planes: on a slope, on a turntable, in circles, falling over, on a cart.
 
-use mbint::inner::model::{Description, Formulation};
 use mbint::results::Method;
-use mbint::inner::study::{self, Options};
+use mbint::Formulation;
 
 use crate::common::dormand_prince::dormand_prince;
 use crate::common::power::{APART_IN_SPACE, assert_balance, spatial_pair};
-use crate::common::{Vary, band, curve, distance, distance_from, largest, nominal, order, output, read, run};
+use crate::common::{Subject, band, curve, distance, distance_from, largest, nominal, order, output, read, run};
 
 const G: f64 = 9.81;
 
@@ -18,9 +17,8 @@ const WAYS: [(&str, f64); 4] = [
     ("scheme: explicit, tolerance: 1e-9", 1e-7),
 ];
 
-fn formulated(mut description: Description, formulation: Formulation) -> Description {
-    description.simulation.formulation = formulation;
-    description
+fn formulated(description: Subject, formulation: Formulation) -> Subject {
+    description.formulation(formulation)
 }
 
 /// A solid ball on a slope has 5/7 of a slide's acceleration, and needs 2/7 of its weight along the slope as friction.
@@ -102,7 +100,7 @@ bounds: {{ chebyshev: {{ order: 6 }} }}
 
 /// A coin of mass 0.2 and radius 0.1 with its axle at an angle from upright, that turns with ω₁ about the horizontal of
 /// its plane, ω₂ about the steepest line of it and ω₃ about its axle.
-fn coin(tilt: f64, [omega_1, omega_2, omega_3]: [f64; 3], simulation: &str) -> Description {
+fn coin(tilt: f64, [omega_1, omega_2, omega_3]: [f64; 3], simulation: &str) -> Subject {
     let (s, c) = tilt.sin_cos();
     let omega = [omega_3 * s - omega_2 * c, omega_1, omega_2 * s + omega_3 * c];
     read(&format!(
@@ -297,8 +295,7 @@ outputs: { x: ball.x }
 simulation: { duration: 0.1, step: 1e-3 }
 ",
     );
-    let options = Options { methods: Some(vec![Method::Certified]), ..Options::default() };
-    let (bounds, summary) = study::run(&description, options).unwrap();
+    let (bounds, summary) = description.finished(Some(vec![Method::Certified]));
     let wanted = "not supported with --certify: constraints of velocities, as of joint roll";
     assert_eq!(summary.failure.as_deref(), Some(wanted));
     assert!(band(output(&bounds, "x"), Method::Certified).upper.iter().all(|value| value.is_nan()));

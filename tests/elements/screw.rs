@@ -1,11 +1,11 @@
 //! Screws: advance and inertia.
 
+use mbint::Formulation;
+
 use std::f64::consts::TAU;
 
-use mbint::inner::model::Formulation;
-
 use crate::common::power::{assert_balance, spatial_pair};
-use crate::common::{Vary, curve, distance_from, largest, nominal, order, read, richardson};
+use crate::common::{curve, distance_from, largest, nominal, order, read, richardson};
 
 /// s = pitch φ / 2π over several turns, and (J + m (pitch/2π)²) φ̈ = τ.
 #[test]
@@ -22,8 +22,7 @@ outputs: { angle: thread.angle, along: thread.displacement, force: thread.force,
 simulation: { duration: 4, step: 1e-2, output_step: 0.1 }
 ",
     );
-    let mut absolute = description.clone();
-    absolute.simulation.formulation = Formulation::Absolute;
+    let absolute = description.clone().formulation(Formulation::Absolute);
     let advance = 0.04 / TAU;
     let acceleration = 0.05 / (0.01 + 2.0 * advance * advance);
     let runs = [1e-2, 5e-3].map(|h| nominal(&absolute.clone().step(h)));

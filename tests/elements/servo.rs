@@ -1,7 +1,7 @@
 //! Servos: step response and limit.
 
 use crate::common::power::{assert_balance, pair};
-use crate::common::{Vary, band, curve, distance, distance_from, nominal, output, read, richardson, run};
+use crate::common::{band, curve, distance, distance_from, nominal, output, read, richardson, run};
 use mbint::results::Method;
 
 /// J θ̈ + k_d θ̇ + k_p θ = k_p θ₀ from rest: the step response of a damped oscillator.

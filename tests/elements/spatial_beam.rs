@@ -3,12 +3,11 @@
 
 use std::f64::consts::PI;
 
-use mbint::inner::model::Description;
 use mbint::results::Bounds;
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
 use crate::common::runge_kutta::runge_kutta;
-use crate::common::{self, curve, largest, nominal, order, read};
+use crate::common::{self, Subject, curve, largest, nominal, order, read};
 
 /// EA, GJ, EI about y and z, and GA of shear where the beam shears.
 #[derive(Clone, Copy)]
@@ -20,7 +19,7 @@ struct Stiffness {
 }
 
 /// A straight cantilever of length 1 along x, at rest under a load at its end.
-fn cantilever(elements: usize, stiffness: Stiffness, load: &str) -> Description {
+fn cantilever(elements: usize, stiffness: Stiffness, load: &str) -> Subject {
     let Stiffness { axial, torsional, bending: [about_y, about_z], shear } = stiffness;
     let shear = shear.map_or(String::new(), |shear| format!("shear_stiffness: {shear:e},"));
     read(&format!(

@@ -3,11 +3,10 @@
 
 use std::path::Path;
 
-use mbint::inner::model::Description;
 use mbint::results::Method;
 
 use crate::common::finite_elements::Beam;
-use crate::common::{band, curve, distance, largest, load, nominal, output, read, run};
+use crate::common::{Subject, band, curve, distance, largest, load, nominal, output, read, run};
 
 const STEEL: Beam =
     Beam { length: 0.8, axial: 4e6, bending: [60.0, 90.0], torsional: 45.0, mass: 1.2, turning: 1e-4 };
@@ -19,7 +18,7 @@ fn between_ends(beam: &Beam, modes: usize) -> String {
 }
 
 /// A cantilever of space whose free end is body `tip`.
-fn cantilever(modes: usize, parameters: &str, rest: &str) -> Description {
+fn cantilever(modes: usize, parameters: &str, rest: &str) -> Subject {
     let matrices = between_ends(&STEEL, modes);
     read(&format!(
         "

@@ -1,7 +1,7 @@
 //! Forces of teeth on bearings, against F_t = T/r, F_r = F_t tan α / cos β, F_a = F_t tan β and those of bevel gears.
 
-use mbint::inner::model::{self, Formulation};
 use mbint::results::Bounds;
+use mbint::Formulation;
 
 use crate::common::{curve, nominal, read};
 
@@ -13,8 +13,7 @@ fn last(bounds: &Bounds, name: &str) -> f64 {
 /// Runs a model in both formulations and compares outputs at the end with what is expected, relative to 1 + |expected|.
 fn assert_loads(text: &str, expected: &[(&str, f64)], tolerance: f64) {
     for formulation in [Formulation::Absolute, Formulation::Joint] {
-        let mut description = read(text);
-        description.simulation.formulation = formulation;
+        let description = read(text).formulation(formulation);
         let bounds = nominal(&description);
         for &(name, expected) in expected {
             let found = last(&bounds, name);
@@ -313,8 +312,7 @@ simulation: {{ duration: 0.1, step: 1e-3 }}
         (chain, "gear: { between: [ja, jb], ratio: -1, pressure_angle: 20 deg }", "coincide"),
         (skew, "rack: { pinion: ja, rack: jb, radius: 0.1, pressure_angle: 20 deg }", "slide across"),
     ] {
-        let description = model::load_str("test", &text(joints, gear), &[]).unwrap();
-        let wrong = mbint::inner::assemble::build(&mbint::inner::assemble::Questions::of(&description)).unwrap_err().to_string();
+        let wrong = read(&text(joints, gear)).unbuilt();
         assert!(wrong.contains("mesh") && wrong.contains(why), "{gear}: {wrong}");
     }
 }

@@ -3,7 +3,7 @@
 use crate::common::power::{APART, assert_balance, pair};
 use crate::common::adams::{Case, compared_with_adams};
 use crate::common::closed_forms::assert_converges;
-use crate::common::{read};
+use crate::common::read;
 
 #[test]
 fn a_torsional_pendulum_twists() {

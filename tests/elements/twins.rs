@@ -1,17 +1,17 @@
 //! Every element of the registries in an assembly: twins that are turned, mirrored, or carried along steadily move as
 //! the original does.
 
-use mbint::inner::model::{Description, load_str};
+use mbint::Model;
 use mbint::results::Bounds;
 use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 use proptest::prelude::*;
 
-use crate::common::{curve, nominal};
+use crate::common::{Subject, curve, nominal};
 use crate::common::registry::{Mechanism, OF_EFFECTS, OF_JOINTS, effects, joints};
 
 impl Mechanism {
     /// The model with these instances, of which all bodies are observed.
-    fn with_twins(&self, spatial: bool, (keyword, example): (&str, &str), twins: &[Twin]) -> Result<Description, String> {
+    fn with_twins(&self, spatial: bool, (keyword, example): (&str, &str), twins: &[Twin]) -> Result<Subject, String> {
         let mut instances = String::new();
         let mut outputs = String::new();
         for (index, twin) in twins.iter().enumerate() {
@@ -33,7 +33,7 @@ impl Mechanism {
             "space: {space}\n{}instances:\n{instances}outputs:\n{outputs}simulation: {{ duration: 0.04, step: 1e-3, extrapolation: 4, output_step: 0.01 }}\n",
             self.assembly(spatial, keyword, example)
         );
-        load_str("twins", &text, &[]).map_err(|wrong| wrong.render(false))
+        Ok(Model::from_yaml_str("twins", &text).map_err(|wrong| wrong.to_string())?.into())
     }
 }
 

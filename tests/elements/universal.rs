@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use crate::common::power::{assert_balance, spatial_pair};
-use crate::common::{Vary, curve, distance_from, model, nominal, order, row};
+use crate::common::{curve, distance_from, model, nominal, order, row};
 
 /// Positions are those of closed loops: Newton ends at 1e-11 of the model's size.
 const CLOSED: f64 = 1e-9;

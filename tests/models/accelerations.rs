@@ -2,10 +2,9 @@
 //! with the tolerance where steps are controlled. Constraints leave ε/h² in those of the steps, and each change of h
 //! disturbs them.
 
-use mbint::inner::model::Description;
 use mbint::results::Method;
 
-use crate::common::{Vary, band, curve, distance, distance_from, largest, nominal, order, read, run};
+use crate::common::{Subject, band, curve, distance, distance_from, largest, nominal, order, read, run};
 
 /// A rod on a hinge off its centre, in absolute coordinates: m = 1.5 kg, d = 0.6 m, radius of gyration 0.25 m.
 const ROD: &str = "
@@ -77,7 +76,7 @@ fn reactions_balance_the_motion_of_their_row() {
     }
 }
 
-fn converge_with_the_tolerance(description: &Description, size: f64) {
+fn converge_with_the_tolerance(description: &Subject, size: f64) {
     let exact = nominal(&description.clone().step(2e-5));
     let tolerances = [1e-3, 1e-4, 1e-5, 1e-6, 1e-7];
     for output in exact.outputs.iter().filter(|output| output.name != "angle" && output.name != "speed") {

@@ -1,8 +1,6 @@
 //! Ends of bounds with many parameters, against a search of this file: another integrator, differences for gradients,
 //! and from corner to corner as their signs say.
 
-use mbint::inner::numerics::Sample;
-
 use crate::common::runge_kutta::runge_kutta;
 use crate::common::{load, read, run};
 
@@ -121,7 +119,7 @@ fn no_end_that_corners_attain_is_missed_and_witnesses_replay() {
         // Attained, so that the band itself holds it but for what another search finds more.
         assert!(lower > band.lower[row] - 5e-3 * width && upper < band.upper[row] + 5e-3 * width, "row {row}");
         for witness in bounds.witnesses.iter().filter(|own| own.row == row) {
-            let replayed = last_mass(&Sample::from(witness.parameters.clone()))[row];
+            let replayed = last_mass(&witness.parameters)[row];
             // Steps err by a share of the tolerance.
             assert!((witness.value - replayed).abs() < 1e-4 * width, "row {row}: {} is not {replayed}", witness.value);
             let (end, sign) = if witness.is_upper { (upper, 1.0) } else { (lower, -1.0) };
@@ -136,7 +134,5 @@ fn no_end_that_corners_attain_is_missed_and_witnesses_replay() {
 #[test]
 fn few_parameters_have_no_witnesses() {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("models/slider_crank_one.yaml");
-    let mut description = load(&path).clone();
-    description.bounds.tolerance = Some(1e-3);
-    assert!(run(&description).witnesses.is_empty());
+    assert!(run(&load(&path).asking(|study| study.tolerance(1e-3))).witnesses.is_empty());
 }

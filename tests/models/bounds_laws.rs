@@ -1,11 +1,11 @@
 //! Laws that bounds obey whatever the mechanism.
 
-use mbint::inner::methods::Taylor;
-use mbint::inner::model::{Description, ParameterValue};
-use mbint::inner::numerics::RangeKind;
+use mbint::RangeKind;
 use mbint::results::{Bounds, Method};
 
-use crate::common::{Findings, Vary, band, distance, largest, load, model, model_files, output, read, run};
+use crate::common::{
+    Findings, Subject, band, distance, largest, load, model, model_files, output, read, run, with_reversed_parameters,
+};
 
 /// Share of the times at which a method's band leaves another's by more than the errors of both.
 fn outside(output: &mbint::results::OutputBounds, inner: Method, outer: Method) -> f64 {
@@ -27,7 +27,7 @@ fn scans_lie_within_chebyshev_bounds() {
     let mut findings = Findings::default();
     for path in model_files() {
         let description = load(&path);
-        if description.bounds.scan.is_none() {
+        if description.study().description().bounds.scan.is_none() {
             continue;
         }
         let bounds = run(&description);
@@ -42,14 +42,18 @@ fn scans_lie_within_chebyshev_bounds() {
 }
 
 /// A hundred times narrower intervals.
-fn narrowed(mut description: Description) -> Description {
-    for parameter in &mut description.parameters {
-        if let ParameterValue::Interval { nominal, lower, upper } = &mut parameter.value {
-            *lower = *nominal + 0.01 * (*lower - *nominal);
-            *upper = *nominal + 0.01 * (*upper - *nominal);
-        }
-    }
-    description
+fn narrowed(description: Subject) -> Subject {
+    scaled(description, 0.01)
+}
+
+/// The intervals times a factor, about their middles.
+fn scaled(description: Subject, factor: f64) -> Subject {
+    let uncertain: Vec<(String, f64)> = description
+        .model
+        .uncertain()
+        .map(|(name, [lower, upper])| (name.to_owned(), (upper - lower) / (upper + lower)))
+        .collect();
+    uncertain.iter().fold(description, |found, (name, relative)| found.uncertain(name, factor * relative.abs()))
 }
 
 #[test]
@@ -58,8 +62,7 @@ fn taylor_and_chebyshev_agree_on_narrow_intervals() {
     // position; up to 1e-7 of an acceleration or reaction, which is h⁻² times the position's).
     let mut findings = Findings::default();
     for name in ["slider_crank", "double_pendulum", "four_bar", "quick_return", "scotch_yoke", "car_axis"] {
-        let mut description = narrowed(model(name)).chebyshev(4, RangeKind::Tight);
-        description.bounds.taylor = Some(Taylor { order: 4, range: RangeKind::Tight });
+        let description = narrowed(model(name)).chebyshev(4, RangeKind::Tight).taylor(4);
         for output in &run(&description).outputs {
             let (chebyshev, taylor) = (band(output, Method::Chebyshev), band(output, Method::Taylor));
             let difference = distance(&chebyshev.lower, &taylor.lower).max(distance(&chebyshev.upper, &taylor.upper));
@@ -78,12 +81,7 @@ fn taylor_and_chebyshev_agree_on_narrow_intervals() {
 #[ignore = "10 s: every model"]
 fn intervals_of_no_width_give_the_nominal_motion() {
     for name in ["slider_crank", "car_axis"] {
-        let mut description = model(name);
-        for parameter in &mut description.parameters {
-            if let ParameterValue::Interval { nominal, lower, upper } = &mut parameter.value {
-                (*lower, *upper) = (*nominal, *nominal);
-            }
-        }
+        let description = scaled(model(name), 0.0);
         for output in &run(&description.duration(1.0)).outputs {
             for band in &output.bands {
                 let (below, above) = (distance(&band.lower, &output.nominal), distance(&band.upper, &output.nominal));
@@ -115,8 +113,7 @@ fn assert_same(a: &Bounds, b: &Bounds, tolerance: f64) {
 fn the_order_of_parameters_does_not_matter() {
     // Sums over nodes run in another order: rounding.
     let description = model("slider_crank").duration(1.0);
-    let mut turned = description.clone();
-    turned.parameters.reverse();
+    let turned = with_reversed_parameters(include_str!("../../models/slider_crank.yaml")).duration(1.0);
     assert_same(&run(&description), &run(&turned), 1e-12);
 }
 

@@ -2,13 +2,11 @@
 //!
 //! Its springs oscillate with 1/s-frequencies of √(k/m) = 45 rad/s, so steps of 1e-3 s resolve a period with 140 steps.
 
-use mbint::inner::model::Description;
-
-use crate::common::{Vary, curve, largest, model, nominal, order, reference, richardson, row};
+use crate::common::{Subject, curve, largest, model, nominal, order, reference, richardson, row};
 
 const NAMES: [&str; 4] = ["left.x", "left.y", "right.x", "right.y"];
 
-fn car_axis() -> Description {
+fn car_axis() -> Subject {
     model("car_axis").observing(&NAMES)
 }
 

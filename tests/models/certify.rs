@@ -4,27 +4,22 @@
 //! The ordinary integration ends Newton's iteration at 1e-11 of a position; its samples are therefore allowed to lie
 //! outside by `NEWTON` times the size of what is observed, and no more.
 
-use mbint::inner::methods::{Certified, Proof};
-use mbint::inner::model::Description;
-use mbint::inner::study::{self, Options};
+use mbint::Study;
 use mbint::results::{Bounds, Method};
 
+use crate::common::Subject;
 use crate::common::*;
 
 /// Error of an ordinary sample: Newton's tolerance, gathered over the steps.
 const NEWTON: f64 = 1e-9;
 
 /// The same, whose certified bounds are of the scheme.
-fn of_scheme(mut description: Description) -> Description {
-    description.bounds.certified = Some(Certified { proof: Proof::Scheme });
-    description
+fn of_scheme(description: Subject) -> Subject {
+    description.asking(Study::certified_scheme)
 }
 
-fn certify(description: Description) -> (Bounds, Option<String>) {
-    let options =
-        Options { methods: Some(vec![Method::Scan, Method::Certified]), threads: Some(2), ..Options::default() };
-    let description = of_scheme(description);
-    let (bounds, summary) = study::run(&description, options).unwrap_or_else(|error| panic!("{error}"));
+fn certify(description: Subject) -> (Bounds, Option<String>) {
+    let (bounds, summary) = of_scheme(description).finished(Some(vec![Method::Scan, Method::Certified]));
     (bounds, summary.failure)
 }
 
@@ -130,9 +125,8 @@ fn what_is_lost_is_unknown_and_said() {
 
 #[test]
 fn what_cannot_be_certified_is_refused() {
-    let refused = |description: &Description| {
-        let options = Options { methods: Some(vec![Method::Certified]), threads: Some(1), ..Options::default() };
-        study::run(&of_scheme(description.clone()), options).unwrap_err().to_string()
+    let refused = |description: &Subject| {
+        of_scheme(description.clone()).asking(|study| study.methods(&[Method::Certified]).threads(1)).refused()
     };
     let many = read(
         "model: many\nparameters: { a: { value: 1, tolerance: 1% }, b: { value: 1, tolerance: 1% }, c: { value: 1, tolerance: 1% } }\n\

@@ -5,6 +5,7 @@ use mbint::inner::certificate::{Certificate, check};
 use mbint::results::{Bounds, Method};
 
 use super::certify_motion::{box_of, certify, excess};
+use crate::common::Subject;
 use crate::common::*;
 use crate::runge_kutta::solve;
 
@@ -21,7 +22,7 @@ fn pushed(force: &str, more: &str, duration: f64) -> Bounds {
     bounds
 }
 
-fn pushed_model(force: &str, more: &str, duration: f64) -> mbint::inner::model::Description {
+fn pushed_model(force: &str, more: &str, duration: f64) -> Subject {
     read(&format!(
         "
 parameters: {{ k: {{ value: 3, tolerance: 1% }} }}

@@ -1,13 +1,12 @@
 //! Certified bounds of the true motion: they hold solutions by DOP853 of equations that were derived by hand, are
 //! hardly wider than what these reach, and say where they end.
 
+use mbint::Study;
 use mbint::inner::certificate::{Certificate, check};
-use mbint::inner::methods::{BoundsRequest, Certified, Proof};
-use mbint::inner::model::Description;
-use mbint::inner::study::{self, Options};
 use mbint::results::{Bounds, Method};
 use rayon::prelude::*;
 
+use crate::common::Subject;
 use crate::common::measured::Case;
 use crate::common::*;
 use crate::runge_kutta::solve;
@@ -15,11 +14,8 @@ use crate::runge_kutta::solve;
 /// Error of the reference: DOP853's tolerance, gathered over the steps.
 const REFERENCE: f64 = 1e-11;
 
-pub fn certify(description: Description) -> (Bounds, Option<String>) {
-    let bounds = BoundsRequest { certified: Some(Certified { proof: Proof::Motion }), ..Default::default() };
-    let description = Description { bounds, ..description };
-    let options = Options { threads: Some(2), ..Options::default() };
-    let (bounds, summary) = study::run(&description, options).unwrap_or_else(|error| panic!("{error}"));
+pub fn certify(description: Subject) -> (Bounds, Option<String>) {
+    let (bounds, summary) = description.asking(Study::certified).finished(None);
     (bounds, summary.failure)
 }
 
@@ -55,7 +51,7 @@ pub fn box_of(count: usize) -> impl Iterator<Item = f64> {
 }
 
 /// Two point masses on rods of 1 m, released at an uncertain angle; the example of MC++ and CRONOS.
-fn two_bobs(duration: f64, step: &str) -> Description {
+fn two_bobs(duration: f64, step: &str) -> Subject {
     read(&format!(
         "
 parameters: {{ p: {{ value: 1, tolerance: 0.5% }}, g: 9.81 }}

@@ -4,7 +4,7 @@
 //! order, so that runs at h and h/2, extrapolated to h = 0, must meet the closed form far more closely than either.
 
 use crate::common::measured::Case;
-use crate::common::{Vary, curve, largest, model, nominal, order, reference, richardson, row};
+use crate::common::{curve, largest, model, nominal, order, reference, richardson, row};
 
 /// Times at which a curve passes zero: cubic Hermite interpolation with its slopes, Newton's method.
 fn zeros(times: &[f64], values: &[f64], slopes: &[f64]) -> Vec<f64> {

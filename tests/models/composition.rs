@@ -1,18 +1,11 @@
 //! Bounds whose outputs are evaluated from the expanded independent coordinates (`expand: coordinates`).
 
-use mbint::inner::methods::{Chebyshev, Degree, Expand, Scan};
-use mbint::inner::model::{Description, ParameterValue};
 use mbint::results::{Method, OutputBounds};
 
-use crate::common::{Findings, band, load, model, model_files, output, run, uncertain_count};
+use crate::common::{Findings, Subject, band, load, model, model_files, output, run};
 
-fn composed(mut description: Description, order: usize, points: usize) -> Description {
-    let k = uncertain_count(&description);
-    let chebyshev = Chebyshev { expand: Expand::Coordinates, ..Chebyshev::of_order(order, k) };
-    description.bounds.chebyshev = Some(chebyshev);
-    description.bounds.scan = Some(Scan::of_points(points, k));
-    description.bounds.taylor = None;
-    description
+fn composed(description: Subject, order: usize, points: usize) -> Subject {
+    description.asking(move |study| study.chebyshev(order)).scan(points)
 }
 
 /// Mean width over the scan's mean width, and how far the scan leaves the bounds at worst, in its own width then.
@@ -33,8 +26,7 @@ fn against_scan(output: &OutputBounds) -> (f64, f64) {
 #[test]
 #[ignore = "20 s: ten seconds of motion"]
 fn ten_seconds_of_the_slider_crank_are_bounded_within_a_percent() {
-    let mut long = model("slider_crank_one");
-    long.simulation.duration = 10.0;
+    let long = model("slider_crank_one").duration(10.0);
     let bounds = run(&composed(long, 5, 1001));
     let (width, outside) = against_scan(output(&bounds, "x3"));
     assert!((width - 1.0).abs() < 0.01, "mean width {width}");
@@ -51,12 +43,11 @@ fn scans_lie_within_composed_bounds_of_every_model() {
     for path in model_files() {
         let name = path.file_stem().unwrap().to_string_lossy().into_owned();
         let description = load(&path);
-        let order = match description.bounds.chebyshev.as_ref().map(|request| &request.degree) {
-            Some(Degree::Fixed { order, .. }) => order[0],
-            _ => 5,
-        };
+        let text = std::fs::read_to_string(&path).unwrap();
+        let order = text.split("chebyshev: { order: ").nth(1).and_then(|own| own.split([',', ' ']).next());
+        let order = order.map_or(5, |order| order.parse().unwrap());
         // As many points along each axis as four parameters can have, of which there are nine.
-        let uncertain = description.uncertain().count() as u32;
+        let uncertain = description.uncertain_count() as u32;
         // Two points along each axis are too many.
         if uncertain > MOST_SCANNED {
             continue;
@@ -77,12 +68,7 @@ fn scans_lie_within_composed_bounds_of_every_model() {
 /// With nothing uncertain but by name, the composed bounds are the nominal motion.
 #[test]
 fn zero_widths_give_the_nominal() {
-    let mut description = composed(model("slider_crank"), 3, 2);
-    for parameter in &mut description.parameters {
-        if let ParameterValue::Interval { nominal, lower, upper } = &mut parameter.value {
-            (*lower, *upper) = (*nominal, *nominal);
-        }
-    }
+    let description = composed(model("slider_crank").uncertain("l1", 0.0).uncertain("tau", 0.0), 3, 2);
     let bounds = run(&description);
     let output = output(&bounds, "x3");
     let band = band(output, Method::Chebyshev);

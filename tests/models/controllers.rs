@@ -2,7 +2,7 @@
 
 use mbint::results::Method;
 
-use crate::common::{Vary, band, curve, largest, model, nominal, output, run};
+use crate::common::{band, curve, largest, model, nominal, output, run};
 
 /// Masses that the controller knows: e = (e₀ + (ė₀ + 10 e₀) t) exp(−10 t) about a path, whatever the arm does.
 #[test]

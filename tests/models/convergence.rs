@@ -3,12 +3,10 @@
 //!
 //! With e(h) = C h² + O(h³), the differences of runs at h, h/2 and h/4 are in the ratio 4 whatever the exact solution.
 
-use mbint::inner::model::Description;
-
-use crate::common::{Findings, Vary, curve, distance, distance_from, model, nominal, order, read, row};
+use crate::common::{Findings, Subject, curve, distance, distance_from, model, nominal, order, read, row};
 
 /// A rod that hangs by its end, its frame at the hinge: M depends on the angle through the centre of mass.
-fn rod_about_its_end() -> Description {
+fn rod_about_its_end() -> Subject {
     read(
         "
 bodies:
@@ -27,7 +25,7 @@ simulation: { duration: 1, step: 1e-3, output_step: 0.02 }
 }
 
 /// Orders of each output, from `after` seconds on, from runs at h, h/2 and h/4.
-fn orders(description: &Description, h: f64, after: f64) -> Vec<(String, f64)> {
+fn orders(description: &Subject, h: f64, after: f64) -> Vec<(String, f64)> {
     let runs = [h, 0.5 * h, 0.25 * h].map(|h| nominal(&description.clone().step(h)));
     let first = row(&runs[0], after);
     let outputs = runs[0].outputs.iter().zip(&runs[1].outputs).zip(&runs[2].outputs);
@@ -45,7 +43,7 @@ const AFTER_THE_START: f64 = 0.1;
 
 #[test]
 fn everything_converges_with_order_two() {
-    let cases: [(&str, Description, &[&str], f64); 6] = [
+    let cases: [(&str, Subject, &[&str], f64); 6] = [
         (
             "slider crank",
             model("slider_crank").duration(1.0),
@@ -93,7 +91,7 @@ fn everything_converges_with_order_two() {
 fn damping_of_the_scheme_does_not_change_its_order() {
     for alpha in [-0.01, -0.05, -0.2, -1.0 / 3.0] {
         let mut description = model("slider_crank").duration(1.0).observing(&["slider.x", "slider.vx"]);
-        description.simulation.alpha = alpha;
+        description = description.asking(move |study| study.alpha(alpha));
         for (output, order) in orders(&description, 2.5e-4, 0.0) {
             println!("alpha = {alpha}: {output} {order:.3}");
             assert!((order - 2.0).abs() < 0.1, "alpha = {alpha}: {output} converges with order {order}");

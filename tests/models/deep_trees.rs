@@ -6,16 +6,15 @@ use std::fmt::Write;
 
 use mbint::inner::assemble;
 use mbint::inner::compile::Scheme;
-use mbint::inner::model::{Description, Formulation, SchemeChoice};
 use mbint::inner::numerics::Sample;
 use mbint::inner::simulate::{Simulator, Stepper};
 use mbint::inner::study;
+use mbint::{Formulation, SchemeChoice};
 
-use crate::common::{Vary, curve, largest, nominal, read, richardson};
+use crate::common::{Subject, curve, largest, nominal, read, richardson};
 
-fn within(mut description: Description, formulation: Formulation) -> Description {
-    description.simulation.formulation = formulation;
-    description
+fn within(description: Subject, formulation: Formulation) -> Subject {
+    description.formulation(formulation)
 }
 
 /// Axes of the joints, in turn.
@@ -48,7 +47,7 @@ simulation: {{ duration: 0.01, step: 1e-3, output_step: 1e-3, formulation: joint
 
 /// A trunk of ten links with a branch of eight from its fifth, a motor in the branch, joints with friction, sliders,
 /// and a spring with a damper between the ends.
-fn branched() -> Description {
+fn branched() -> Subject {
     let [mut bodies, mut joints, mut effects] = [const { String::new() }; 3];
     for i in 0..18 {
         writeln!(bodies, "  b{i}: {{ mass: {:?}, inertia: {{ xx: 0.004, yy: 0.008, zz: 0.006, xy: 0.001, yz: -0.0005 }}, center_of_mass: [0.02, 0.01, 0], points: {{ a: [-0.15, 0, 0.02], e: [0.15, 0, 0] }} }}", 1.0 - 0.03 * i as f64).unwrap();
@@ -79,8 +78,11 @@ simulation: {{ duration: 0.1, step: 1e-3, output_step: 0.02, formulation: joint 
 }
 
 /// The same equations, eliminated link by link and as a whole.
-fn both(description: &Description) -> [Simulator; 2] {
-    let of_links = assemble::in_joint_coordinates(&assemble::Questions::of(description), None, None).unwrap().unwrap();
+fn both(description: &Subject) -> [Simulator; 2] {
+    let of_links =
+        assemble::in_joint_coordinates(&assemble::Questions::of(description.study().description()), None, None)
+            .unwrap()
+            .unwrap();
     assert!(!of_links.links.is_empty());
     let mut whole = of_links.clone();
     whole.links.clear();
@@ -96,7 +98,7 @@ fn instructions_grow_in_proportion_to_the_links() {
     for (spatial, a_link) in [(false, 250), (true, 1400)] {
         let [short, long] = [20, 80].map(|links| {
             let description = read(&chain(links, spatial));
-            let simulator = study::prepare(&description).unwrap();
+            let simulator = study::prepare(description.study().description()).unwrap();
             (instructions(&simulator), simulator.start.acceleration().len())
         });
         println!("spatial {spatial}: step and accelerations {short:?} of 20 links, {long:?} of 80");
@@ -110,8 +112,8 @@ fn instructions_grow_in_proportion_to_the_links() {
 #[ignore = "minutes: chains of 160 links"]
 fn chains_of_160_links_cost_four_times_as_much_as_of_40() {
     for spatial in [false, true] {
-        let [short, long] =
-            [40, 160].map(|links| instructions(&study::prepare(&read(&chain(links, spatial))).unwrap()));
+        let [short, long] = [40, 160]
+            .map(|links| instructions(&study::prepare(read(&chain(links, spatial)).study().description()).unwrap()));
         let exponent = (long as f64 / short as f64).ln() / 4_f64.ln();
         println!("spatial {spatial}: {short} and {long} instructions, exponent {exponent:.3}");
         assert!(exponent < 1.06, "{exponent}");
@@ -180,8 +182,7 @@ fn a_chain_of_twenty_moves_as_pinocchio_says() {
         .collect();
     let names: Vec<&str> = outputs.iter().map(String::as_str).collect();
     let description = read(&chain(20, true)).observing(&names).duration(0.2).rows_every(0.2);
-    let mut explicit = description.clone().tolerance(1e-8);
-    explicit.simulation.scheme = SchemeChoice::Explicit;
+    let explicit = description.clone().tolerance(1e-8).scheme(SchemeChoice::Explicit);
     let by_hht = [5e-4, 2.5e-4].map(|h| nominal(&description.clone().by_hht().step(h)));
     let explicit = nominal(&explicit);
     let angles = [0.3697232906, 0.163273643, -0.039319955, 0.04612344483];
@@ -206,8 +207,7 @@ fn a_chain_of_twenty_moves_as_pinocchio_says() {
 fn steps_of_a_chain_under_a_tolerance_end_where_explicit_ones_do() {
     let description = read(&chain(14, true)).duration(0.2).rows_every(0.05);
     let by_hht = nominal(&description.clone().tolerance(1e-3).by_hht());
-    let mut explicit = description.tolerance(1e-8);
-    explicit.simulation.scheme = SchemeChoice::Explicit;
+    let explicit = description.tolerance(1e-8).scheme(SchemeChoice::Explicit);
     let (found, wanted) = (curve(&by_hht, "tip").to_vec(), nominal(&explicit));
     let wanted = curve(&wanted, "tip");
     let apart = largest(found.iter().zip(wanted).map(|(a, b)| a - b)) / largest(wanted.iter().copied());

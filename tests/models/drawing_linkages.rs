@@ -2,7 +2,6 @@
 
 use std::f64::consts::TAU;
 
-use mbint::inner::methods::{BoundsRequest, Scan};
 use mbint::results::Method;
 
 use crate::common::measured::Case;
@@ -45,9 +44,7 @@ fn peaucelliers_pen_draws_a_straight_line() {
 
 #[test]
 fn peaucelliers_line_bends_as_inversion_says() {
-    let mut description = model("peaucellier");
-    description.bounds = BoundsRequest { scan: Some(Scan::of_points(3, 2)), ..description.bounds };
-    let bounds = run(&description);
+    let bounds = run(&model("peaucellier").scan(3));
     for (name, index) in [("pen_x", 0), ("pen_y", 1)] {
         let output = output(&bounds, name);
         let band = band(output, Method::Scan);

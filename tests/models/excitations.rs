@@ -1,12 +1,11 @@
 //! Bounds over functions of the time, against closed forms of linear systems, another integrator, and random functions.
 
-use mbint::inner::model::{Description, Witness};
 use mbint::results::{Bounds, FunctionWitness, Summary, Verdict};
 
-use crate::common::{read, run_methods};
+use crate::common::{Subject, read, run_methods};
 use crate::excitation_classes::{PARTS, kernel, over_kernel};
 
-pub fn run(text: &str) -> (Description, Bounds, Summary) {
+pub fn run(text: &str) -> (Subject, Bounds, Summary) {
     let model = read(text);
     let (bounds, summary) = run_methods(&model, None);
     (model, bounds, summary)
@@ -204,8 +203,7 @@ fn reduced_outputs_and_requirements_are_of_functions() {
     // The witness replays it.
     let witness = bounds.functions.iter().find(|own| own.name == "peak").unwrap();
     let text: String = witness.functions[0].points.iter().map(|(time, value)| format!("{time},{value}\n")).collect();
-    let mut replayed = model;
-    Witness::parse(&format!("t,push\n{text}")).unwrap().replay(&mut replayed).unwrap();
+    let replayed = Subject::from(model.model.replaying(&format!("t,push\n{text}")).unwrap());
     let (_, again) = run_methods(&replayed, None);
     let nominal = again.reduced.iter().find(|own| own.name == "peak").unwrap().nominal;
     assert!((nominal - peak).abs() < 2e-3 * peak, "{nominal} {peak}");
@@ -340,8 +338,7 @@ fn the_worst_function_of_a_pendulum_is_worse_than_random_ones() {
         assert!((replayed - worst.value).abs() < 0.01 * (upper - lower), "{replayed} {}", worst.value);
     }
     let text: String = worst.functions[0].points.iter().map(|(time, value)| format!("{time},{value}\n")).collect();
-    let mut replayed = model;
-    Witness::parse(&format!("t,ripple\n{text}")).unwrap().replay(&mut replayed).unwrap();
+    let replayed = Subject::from(model.model.replaying(&format!("t,ripple\n{text}")).unwrap());
     let (again, _) = run_methods(&replayed, None);
     let row = again.times.iter().position(|time| Some(*time) == worst.time).unwrap();
     assert!((again.outputs[0].nominal[row] - worst.value).abs() < 1e-3 * (upper - lower));

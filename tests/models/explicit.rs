@@ -1,19 +1,16 @@
 //! The explicit method of order 8: against references that other methods computed, closed forms, and what it is not
 //! for.
 
-use mbint::inner::methods::Taylor;
-use mbint::inner::model::{Description, SchemeChoice};
-use mbint::inner::numerics::RangeKind;
-use mbint::inner::study::{self, Options};
 use mbint::results::Method;
+use mbint::{RangeKind, SchemeChoice};
 
 use crate::common::{
-    Vary, band, curve, distance, distance_from, largest, model, nominal, output, read, reference, row, run, run_methods,
+    Subject, band, curve, distance, distance_from, largest, model, nominal, output, read, reference, row, run,
+    run_methods,
 };
 
-fn scheme(mut description: Description, scheme: SchemeChoice) -> Description {
-    description.simulation.scheme = scheme;
-    description
+fn scheme(description: Subject, scheme: SchemeChoice) -> Subject {
+    description.scheme(scheme)
 }
 
 /// The slider crank, whose loop is closed by projections, against DOP853 in minimal coordinates (error below 1e-8).
@@ -90,8 +87,8 @@ bounds: { chebyshev: { order: 10 }, taylor: { order: 12 }, scan: { points: 41 } 
 
 #[test]
 fn a_tolerance_of_the_bounds_takes_it() {
-    let mut description = model("slider_crank_one").chebyshev(8, RangeKind::Tight).duration(1.5);
-    description.bounds.tolerance = Some(1e-4);
+    let description = model("slider_crank_one").asking(|study| study.tolerance(1e-4));
+    let description = description.chebyshev(8, RangeKind::Tight).duration(1.5);
     let (bounds, summary) = run_methods(&description, None);
     assert_eq!(summary.integration.as_deref(), Some("Dormand–Prince 8(5,3), explicit"));
     let truth = reference("slider_crank/bounds_l1_1pct.csv");
@@ -118,15 +115,14 @@ simulation: { duration: 2, tolerance: 1e-5 }
     let (_, summary) = run_methods(&read(text), Some(Vec::new()));
     assert_eq!(summary.integration, None);
     let explicit = scheme(read(text), SchemeChoice::Explicit);
-    let refused = study::run(&explicit, Options::default()).unwrap_err().to_string();
+    let refused = explicit.refused();
     assert!(refused.contains("stiff from t = "), "{refused}");
 }
 
 /// A scheme that is asked for with a step takes that step, and switches are crossed within the stated error.
 #[test]
 fn steps_that_are_given_are_taken() {
-    let mut description = model("double_pendulum").observing(&["lower.end.x"]).duration(1.0).rows_every(0.1);
-    description.bounds = mbint::inner::methods::BoundsRequest::default();
+    let description = model("double_pendulum").observing(&["lower.end.x"]).duration(1.0).rows_every(0.1);
     let exact = nominal(&scheme(description.clone().step(1e-3), SchemeChoice::Explicit));
     let [coarse, fine] = [0.05, 0.025].map(|h| {
         let bounds = nominal(&scheme(description.clone().step(h), SchemeChoice::Explicit));
@@ -141,12 +137,8 @@ fn steps_that_are_given_are_taken() {
 
 #[test]
 fn jets_follow_the_explicit_method() {
-    let mut description = model("slider_crank_one").observing(&["slider.x"]).duration(0.5).rows_every(0.05);
-    description.bounds.taylor = Some(Taylor { order: 6, range: RangeKind::Tight });
-    description.bounds.chebyshev = None;
-    description.bounds.scan = None;
-    let mut fine = description.clone().step(5e-4);
-    fine.simulation.extrapolation = Some(4);
+    let description = model("slider_crank_one").observing(&["slider.x"]).duration(0.5).rows_every(0.05).taylor(6);
+    let fine = description.clone().step(5e-4).extrapolation(4);
     let (fine, explicit) = (run(&fine), run(&description.tolerance(1e-8)));
     let (band, exact) = (&explicit.outputs[0].bands[0], &fine.outputs[0].bands[0]);
     let error = largest(band.upper.iter().zip(&exact.upper).map(|(a, b)| a - b));
@@ -157,20 +149,22 @@ fn jets_follow_the_explicit_method() {
 /// `explain` names the method under a tolerance, and why it is not taken.
 #[test]
 fn explain_says_by_what_a_model_is_integrated() {
-    let decisions = |description: &Description| -> Vec<String> {
-        let explained = study::explain(description).unwrap().decisions.into_iter();
+    let decisions = |bounds: &str, simulation: &str| -> Vec<String> {
+        let text = include_str!("../../models/slider_crank_one.yaml")
+            .replace("\nbounds:\n", &format!("\nbounds:\n{bounds}"))
+            .replace("simulation: {", &format!("simulation: {{ {simulation}"));
+        let explained = read(&text).study().explain().unwrap().decisions.into_iter();
         explained
             .filter(|one| one.what.starts_with("integrated"))
             .map(|one| format!("{}: {}", one.what, one.why))
             .collect()
     };
-    let mut description = model("slider_crank_one");
-    assert!(decisions(&description).is_empty(), "nothing is chosen without a tolerance");
-    description.bounds.tolerance = Some(1e-4);
-    let [one] = &decisions(&description)[..] else { panic!("{:?}", decisions(&description)) };
+    assert!(decisions("", "").is_empty(), "nothing is chosen without a tolerance");
+    let tolerance = "  tolerance: 1e-4\n";
+    let [one] = &decisions(tolerance, "")[..] else { panic!("{:?}", decisions(tolerance, "")) };
     println!("{one}");
     assert!(one.starts_with("integrated by the explicit method of order 8: not stiff"), "{one}");
-    assert!(decisions(&description.by_hht()).is_empty(), "the model says it");
+    assert!(decisions(tolerance, "scheme: hht, ").is_empty(), "the model says it");
 }
 
 /// Within the error that is stated, and that within what is allowed.

@@ -1,18 +1,14 @@
 //! Extrapolated steps: several step lengths combined, against references that other methods computed, and closed forms.
 
-use mbint::inner::methods::Taylor;
-use mbint::inner::model::Description;
-use mbint::inner::numerics::RangeKind;
 use mbint::results::Method;
 
+use crate::common::run_methods;
 use crate::common::{
-    Vary, band, curve, distance_from, largest, model, nominal, order, output, read, reference, row, run,
+    Subject, band, curve, distance_from, largest, model, nominal, order, output, read, reference, row, run,
 };
-use crate::common::{run_methods, uncertain_count};
 
-fn levels(mut description: Description, levels: usize) -> Description {
-    description.simulation.extrapolation = (levels > 1).then_some(levels);
-    description
+fn levels(description: Subject, levels: usize) -> Subject {
+    description.extrapolation(levels)
 }
 
 /// Largest error of the slider crank's x3 against DOP853 in minimal coordinates (error below 1e-8).
@@ -171,11 +167,8 @@ bounds: { tolerance: 1e-6, chebyshev: {} }
 /// Taylor's coefficients are those of the extrapolated motion: the derivative by the stiffness of x₀ cos(√(k/m) t).
 #[test]
 fn jets_are_extrapolated() {
-    let mut description = model("slider_crank_one").observing(&["slider.x"]).duration(0.5).rows_every(0.05);
-    assert_eq!(uncertain_count(&description), 1);
-    description.bounds.taylor = Some(Taylor { order: 6, range: RangeKind::Tight });
-    description.bounds.chebyshev = None;
-    description.bounds.scan = None;
+    let description = model("slider_crank_one").observing(&["slider.x"]).duration(0.5).rows_every(0.05).taylor(6);
+    assert_eq!(description.uncertain_count(), 1);
     let fine = run(&description.clone().step(5e-5));
     let [plain, three] = [1, 3].map(|of_levels| {
         let bounds = run(&levels(description.clone().step(2e-3), of_levels));

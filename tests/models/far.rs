@@ -3,18 +3,17 @@
 use std::fmt::Write as _;
 
 use mbint::inner::export::bounds_csv;
-use mbint::inner::model::Description;
 use mbint::inner::numerics::Sample;
 use mbint::inner::simulate::{Simulator, Stepper};
-use mbint::inner::study::{self, Options, prepare};
+use mbint::inner::study::prepare;
 use symdiff::Tape;
 
-use crate::common::{Vary, read, run};
+use crate::common::{Subject, read, run};
 
 const STEP: f64 = 1e-3;
 
 /// The paper's slider crank, with more effects.
-fn slider_crank(points: &str, effects: &str) -> Description {
+fn slider_crank(points: &str, effects: &str) -> Subject {
     let text = include_str!("../../models/slider_crank.yaml")
         .replace("bodies:\n", &format!("bodies:\n  ground: {{ points: {{ O: [0, 0]{points} }} }}\n"))
         .replace("initial:", &format!("{effects}initial:"));
@@ -22,7 +21,7 @@ fn slider_crank(points: &str, effects: &str) -> Description {
 }
 
 /// Floors far below the crank and the rod.
-fn floors(count: usize) -> Description {
+fn floors(count: usize) -> Subject {
     let (mut points, mut effects) = (String::new(), String::new());
     for i in 0..count {
         let point = ["crank.B", "rod.C", "rod", "crank"][i % 4];
@@ -49,11 +48,11 @@ fn instructions(simulator: &Simulator, active: bool) -> usize {
 /// factorised and in each iteration.
 #[test]
 fn a_far_contact_is_its_gap() {
-    let bare = prepare(&slider_crank("", "")).unwrap();
+    let bare = prepare(slider_crank("", "").study().description()).unwrap();
     assert_eq!(instructions(&bare, true), instructions(&bare, false));
     let mut before = instructions(&bare, true);
     for count in [1, 2, 4, 16] {
-        let simulator = prepare(&floors(count)).unwrap();
+        let simulator = prepare(floors(count).study().description()).unwrap();
         let [all, apart] = [true, false].map(|active| instructions(&simulator, active));
         println!("{count} contacts: {all} instructions, {apart} while apart, {before} before");
         assert!(all > instructions(&bare, true) + 30 * count, "{count}: {all}");
@@ -76,8 +75,8 @@ fn far_contacts_leave_every_method_as_it_was() {
 }
 
 /// Every lane of a wide tile against the same sample alone, where lanes touch at different times, or not at all.
-fn agrees_with_samples_alone(description: &Description, width: usize, steps: usize) -> (usize, usize) {
-    let simulator = prepare(description).unwrap();
+fn agrees_with_samples_alone(description: &Subject, width: usize, steps: usize) -> (usize, usize) {
+    let simulator = prepare(description.study().description()).unwrap();
     let sample = |lane: usize| -> Sample {
         let share = (lane as f64 + 0.5) / width as f64;
         simulator.system.parameters.iter().map(|p| p.lower + share * (p.upper - p.lower)).collect()
@@ -157,15 +156,14 @@ bounds: {{ scan: {{ points: 5 }} }}
         "x: ball.x, rim: leash.force, ends: ends.force, met: meeting.force, energy: energy, push: floor.force",
     ));
     let runs = [1, 2, 7].map(|threads| {
-        let options = Options { threads: Some(threads), ..Options::default() };
-        let (bounds, _) = study::run(&balls.clone().duration(0.6).scan(37), options).unwrap();
-        bounds_csv(&bounds).unwrap()
+        let result = balls.clone().duration(0.6).scan(37).study().threads(threads).run().unwrap();
+        bounds_csv(result.bounds()).unwrap()
     });
     assert!(runs[0] == runs[1] && runs[0] == runs[2], "results depend on the number of threads");
     for (description, steps) in [(crank.observing(&["slider.x", "buffer.force"]), 700), (balls, 900)] {
         for width in [4, 32] {
             let (mixed, touched) = agrees_with_samples_alone(&description, width, steps);
-            println!("{}: width {width}: {mixed} of {steps} steps mixed, {touched} lanes touched", description.name);
+            println!("{}: width {width}: {mixed} of {steps} steps mixed, {touched} lanes touched", description.name());
             assert!(mixed > 20 && touched < steps * width / 2, "{mixed} mixed, {touched} touched");
         }
     }

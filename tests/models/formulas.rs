@@ -2,10 +2,9 @@
 
 use std::f64::consts::PI;
 
-use mbint::inner::model;
 use mbint::results::Method;
 
-use crate::common::{Vary, band, curve, largest, nominal, output, read, run};
+use crate::common::{band, curve, largest, nominal, output, read, run};
 
 /// A mass on which a force acts.
 fn pushed(force: &str) -> String {
@@ -107,10 +106,10 @@ fn units_stand_in_formulas() {
         // A mass called `m` would make `N*m` ambiguous.
         let text = pushed("F").replace("m: 2 kg", "M: 2 kg").replace("mass: m", "mass: M");
         let text = text.replace("F: 3 N }", &format!("F: 3 N, p: \"{formula}\" }}"));
-        let model = model::load_str("x.yaml", &text, &[]).unwrap_or_else(|errors| panic!("{formula}: {errors}"));
+        let model = read(&text);
         let outputs = text.replace("f: \"F\"", "f: p");
         let bounds = nominal(&read(&outputs));
-        assert!(model.parameters.iter().any(|parameter| parameter.name == "p"));
+        assert!(model.study().description().parameters.iter().any(|parameter| parameter.name == "p"));
         curve(&bounds, "f")[0]
     };
     for (formula, wanted) in [

@@ -1,38 +1,40 @@
 //! Joint and absolute coordinates are two ways to write down one motion: at the start they agree to rounding, in
 //! positions, velocities, accelerations and reactions, and later to the scheme's error.
 
+use mbint::Formulation;
 use mbint::inner::assemble;
 use mbint::inner::compile::Scheme;
-use mbint::inner::model::{Description, Formulation, Stepping};
+use mbint::inner::model::Stepping;
 use mbint::inner::simulate::{SimulationError, Simulator};
 use mbint::inner::study;
 
-use crate::common::{Vary, curve, largest, load, model_files, nominal, output, read, richardson, run};
+use crate::common::{Subject, curve, largest, load, model_files, nominal, output, read, richardson, run};
 
-fn within(mut description: Description, formulation: Formulation) -> Description {
-    description.simulation.formulation = formulation;
-    description
+fn within(description: Subject, formulation: Formulation) -> Subject {
+    description.formulation(formulation)
 }
 
-fn has_both(description: &Description) -> bool {
-    assemble::in_joint_coordinates(&assemble::Questions::of(description), None, None).unwrap().is_ok()
+fn has_both(description: &Subject) -> bool {
+    assemble::in_joint_coordinates(&assemble::Questions::of(description.study().description()), None, None)
+        .unwrap()
+        .is_ok()
 }
 
 /// Every output's course.
-fn courses(description: Description) -> Vec<Vec<f64>> {
+fn courses(description: Subject) -> Vec<Vec<f64>> {
     nominal(&description).outputs.into_iter().map(|output| output.nominal).collect()
 }
 
 /// Differences between the formulations of each output, relative to the largest value of it: at the start, and over all
 /// rows of what two step sizes extrapolate to.
-fn differences(description: &Description, h: f64) -> Vec<(String, f64, f64)> {
+fn differences(description: &Subject, h: f64) -> Vec<(String, f64, f64)> {
     let [absolute, joint] = [Formulation::Absolute, Formulation::Joint].map(|formulation| {
         let course = |h: f64| courses(within(description.clone(), formulation).step(h));
         let (coarse, fine) = (course(h), course(0.5 * h));
         let limit: Vec<Vec<f64>> = coarse.iter().zip(&fine).map(|(coarse, fine)| richardson(coarse, fine)).collect();
         (fine, limit)
     });
-    let names = description.outputs.iter().map(|output| output.name.clone());
+    let names = description.model.outputs().map(|(name, _)| name.to_owned());
     let pairs = absolute.0.iter().zip(&joint.0).zip(absolute.1.iter().zip(&joint.1));
     names
         .zip(pairs)
@@ -136,17 +138,19 @@ simulation: {{ duration: 0.5, step: 1e-3, output_step: 0.05 }}
 }
 
 #[track_caller]
-fn agree(description: &Description, h: f64, later: f64) {
+fn agree(description: &Subject, h: f64, later: f64) {
     assert!(
         has_both(description),
         "{}: {:?}",
-        description.name,
-        assemble::in_joint_coordinates(&assemble::Questions::of(description), None, None).unwrap().err()
+        description.name(),
+        assemble::in_joint_coordinates(&assemble::Questions::of(description.study().description()), None, None)
+            .unwrap()
+            .err()
     );
     for (name, at_start, apart) in differences(description, h) {
-        println!("{} {name}: {at_start:.1e} {apart:.1e}", description.name);
-        assert!(at_start < 1e-9, "{} {name}: {at_start:.1e} at the start", description.name);
-        assert!(apart < later, "{} {name}: {apart:.1e} apart", description.name);
+        println!("{} {name}: {at_start:.1e} {apart:.1e}", description.name());
+        assert!(at_start < 1e-9, "{} {name}: {at_start:.1e} at the start", description.name());
+        assert!(apart < later, "{} {name}: {apart:.1e} apart", description.name());
     }
 }
 
@@ -162,25 +166,22 @@ fn a_floating_tree_moves_alike() {
 
 #[test]
 fn every_model_that_has_both_moves_alike() {
-    let models: Vec<Description> = model_files().iter().map(|path| load(path)).filter(has_both).collect();
-    let names: Vec<&str> = models.iter().map(|model| model.name.as_str()).collect();
+    let models: Vec<Subject> = model_files().iter().map(|path| load(path)).filter(has_both).collect();
+    let names: Vec<&str> = models.iter().map(|model| model.name()).collect();
     println!("{names:?}");
     for description in &models {
-        let duration = description.simulation.duration.min(0.5);
+        let duration = description.model.duration().min(0.5);
         // Impacts take the short steps that their model asks for.
-        let step = match description.simulation.stepping {
+        let step = match description.study().description().simulation.stepping {
             Stepping::Fixed(step) => duration / 1000.0 / (duration / 1000.0 / step).ceil(),
             Stepping::Tolerance(_) => duration / 1000.0,
         };
-        // Verdicts are searched over the box, which the motions have no part in.
-        let mut description = description.clone();
-        description.requirements.clear();
-        agree(&description.duration(duration).rows_every(duration / 10.0), step, 1e-4);
+        agree(&description.clone().duration(duration).rows_every(duration / 10.0), step, 1e-4);
     }
 }
 
 /// Bars of 0.3 m one hanging from the other, by pins about y and z in turn, or all about z in the plane.
-fn chain(links: usize, spatial: bool, formulation: &str) -> Description {
+fn chain(links: usize, spatial: bool, formulation: &str) -> Subject {
     let mut bodies = String::new();
     let mut joints = String::new();
     for i in 0..links {
@@ -201,8 +202,8 @@ simulation: {{ duration: 0.01, step: 1e-3, output_step: 1e-3, formulation: {form
 }
 
 /// Instructions of a step with one correction.
-fn instructions(description: &Description) -> (bool, usize) {
-    let simulator = study::prepare(description).unwrap();
+fn instructions(description: &Subject) -> (bool, usize) {
+    let simulator = study::prepare(description.study().description()).unwrap();
     (simulator.system.formulation.joint, simulator.program.instructions())
 }
 
@@ -233,11 +234,11 @@ fn an_open_start_of_a_long_chain_takes_instructions_in_proportion_to_its_links()
             let before = if i == 0 { "ground".to_owned() } else { format!("b{}.e", i - 1) };
             joints += &format!("  j{i}: {{ revolute: [{before}, b{i}.a] }}\n");
         }
-        let simulator = study::prepare(&read(&format!(
+        let model = read(&format!(
             "bodies:\n{bodies}joints:\n{joints}initial: {{ b0.angle: 0.1 }}\noutputs: {{ y: b1.y }}
 simulation: {{ duration: 0.01, step: 1e-3, output_step: 1e-3, formulation: absolute }}\n"
-        )));
-        simulator.unwrap().start.position().len()
+        ));
+        study::prepare(model.study().description()).unwrap().start.position().len()
     });
     println!("{corrections:?}");
     assert!(corrections[1] < 23 * corrections[0] / 10, "{corrections:?}");
@@ -246,7 +247,8 @@ simulation: {{ duration: 0.01, step: 1e-3, output_step: 1e-3, formulation: absol
 /// What takes too long is given up; what does not is compiled as ever.
 #[test]
 fn a_program_is_given_up_beyond_its_limit_and_not_before() {
-    let system = assemble::in_absolute_coordinates(&assemble::Questions::of(&read(&tree(false)))).unwrap();
+    let system =
+        assemble::in_absolute_coordinates(&assemble::Questions::of(read(&tree(false)).study().description())).unwrap();
     let within = |limit| Simulator::within(system.clone(), Scheme::Hht { alpha: -0.1 }, 1e-3, limit);
     assert_eq!(within(Some(1000)).map(|_| ()), Err(SimulationError::TooLong));
     let [free, limited] = [None, Some(1_000_000)].map(|limit| within(limit).unwrap());

@@ -3,9 +3,10 @@
 
 use std::path::{Path, PathBuf};
 
+use mbint::Formulation;
 use mbint::inner::assemble;
 use mbint::inner::compile::Scheme;
-use mbint::inner::model::{Analysis, Description, Formulation, Stepping};
+use mbint::inner::model::{Analysis, Stepping};
 use mbint::inner::numerics::Sample;
 use mbint::inner::simulate::{
     Gradient, Integration, Interruption, JetBox, NoGradient, Observed, Schedule, Simulator, Steps, Wanted, gradients,
@@ -13,7 +14,7 @@ use mbint::inner::simulate::{
 };
 use symdiff::jet::JetSpace;
 
-use crate::common::{load_all, model_files};
+use crate::common::{Subject, load_all, model_files};
 
 const HHT: Scheme = Scheme::Hht { alpha: -0.1 };
 
@@ -119,8 +120,9 @@ fn allowed(schedule: &Schedule) -> f64 {
 }
 
 /// Schedules of the first steps of a model, taken in the three ways.
-fn schedules(description: &Description) -> Vec<Schedule> {
-    let simulation = &description.simulation;
+fn schedules(description: &Subject) -> Vec<Schedule> {
+    let study = description.study();
+    let simulation = &study.description().simulation;
     let step = match simulation.stepping {
         Stepping::Fixed(step) => step,
         Stepping::Tolerance(_) => simulation.output_step / 4.0,
@@ -140,16 +142,22 @@ fn gradients_are_jets_of_first_order() {
     let [mut agreed, mut neither, mut refused] = [0; 3];
     for path in files() {
         // Stack-ups have no steps; their derivatives are compared in `stacks.rs`.
-        let descriptions = load_all(&path).into_iter().filter(|own| own.analysis != Analysis::Dimensions);
+        let descriptions =
+            load_all(&path).into_iter().filter(|own| own.study().description().analysis != Analysis::Dimensions);
         for description in descriptions {
             for formulation in [Formulation::Absolute, Formulation::Joint] {
                 let system = match formulation {
                     Formulation::Absolute => {
-                        assemble::in_absolute_coordinates(&assemble::Questions::of(&description)).ok()
+                        assemble::in_absolute_coordinates(&assemble::Questions::of(description.study().description()))
+                            .ok()
                     }
-                    _ => assemble::in_joint_coordinates(&assemble::Questions::of(&description), None, None)
-                        .ok()
-                        .and_then(Result::ok),
+                    _ => assemble::in_joint_coordinates(
+                        &assemble::Questions::of(description.study().description()),
+                        None,
+                        None,
+                    )
+                    .ok()
+                    .and_then(Result::ok),
                 };
                 let Some(system) = system else { continue };
                 if system.parameters.is_empty() || system.outputs.is_empty() {
@@ -157,7 +165,7 @@ fn gradients_are_jets_of_first_order() {
                 }
                 for schedule in schedules(&description) {
                     let Ok(simulator) = Simulator::new(system.clone(), HHT, schedule.first_step()) else { continue };
-                    let name = format!("{} {formulation:?} {:?}", description.name, schedule.integration);
+                    let name = format!("{} {formulation:?} {:?}", description.name(), schedule.integration);
                     match compared(&simulator, &schedule) {
                         Found::Agree(difference) => {
                             agreed += 1;

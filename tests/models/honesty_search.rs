@@ -6,11 +6,10 @@
 
 use std::f64::consts::PI;
 
-use mbint::inner::model::Description;
 use mbint::results::{Bounds, Method};
 
 use crate::common::runge_kutta::runge_kutta;
-use crate::common::{Vary, band, output, read, run};
+use crate::common::{Subject, band, output, read, run};
 
 /// Rows that are not flagged, the share of them that is covered, and the mean of the stated over the mean of the true
 /// errors.
@@ -59,7 +58,7 @@ pub fn cosine(a: f64, from: f64, to: f64) -> (f64, f64) {
 }
 
 /// Oscillators of unit mass about `origin`: amplitude, stiffness and its tolerance of each.
-pub fn oscillators(parts: &[(f64, f64, f64)], outputs: &str, origin: f64, settings: &str) -> Description {
+pub fn oscillators(parts: &[(f64, f64, f64)], outputs: &str, origin: f64, settings: &str) -> Subject {
     let each = |text: fn(usize, (f64, f64, f64), f64) -> String| -> String {
         parts.iter().enumerate().map(|(i, &part)| text(i, part, origin)).collect()
     };

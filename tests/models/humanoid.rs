@@ -2,7 +2,7 @@
 //! angles. A point of a segment is p + Σ aⱼ u(θⱼ) + b n(θ), with u along and n across a segment.
 
 use crate::common::dormand_prince::dormand_prince;
-use crate::common::{Vary, curve, distance, model, nominal, order};
+use crate::common::{curve, distance, model, nominal, order};
 
 /// Trunk, then thigh, shank, upper arm and forearm of the left side, then of the right.
 const SEGMENTS: usize = 9;

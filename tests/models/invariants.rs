@@ -1,8 +1,8 @@
 //! What no step may lose: the loops stay closed, and energy stays where nothing takes it.
 
-use mbint::inner::model::{Description, Formulation};
+use mbint::Formulation;
 
-use crate::common::{Findings, Vary, curve, largest, model, nominal, order, read};
+use crate::common::{Findings, Subject, curve, largest, model, nominal, order, read};
 
 /// Models and the gaps of their joints: positions, then the velocities.
 const GAPS: [(&str, &[&str], &[&str]); 5] = [
@@ -30,7 +30,7 @@ const GAPS: [(&str, &[&str], &[&str]); 5] = [
 ];
 
 /// Largest value of each output.
-fn worst(description: &Description, formulas: &[&str], h: f64) -> Vec<f64> {
+fn worst(description: &Subject, formulas: &[&str], h: f64) -> Vec<f64> {
     let bounds = nominal(&description.clone().observing(formulas).step(h));
     bounds.outputs.iter().map(|output| largest(output.nominal.iter().copied())).collect()
 }
@@ -55,7 +55,7 @@ fn velocities_leave_the_joints_by_the_square_of_the_step() {
     for (name, _, rates) in GAPS {
         let mut description = model(name).duration(1.0).rows_every(0.01);
         // In joint coordinates they cannot leave.
-        description.simulation.formulation = Formulation::Absolute;
+        description = description.formulation(Formulation::Absolute);
         let runs = [5e-4, 2.5e-4].map(|h| worst(&description, rates, h));
         for ((rate, coarse), fine) in rates.iter().zip(&runs[0]).zip(&runs[1]) {
             let order = order(*coarse, *fine);
@@ -67,7 +67,7 @@ fn velocities_leave_the_joints_by_the_square_of_the_step() {
 }
 
 /// Largest change of the energy from its start.
-fn drift(description: &Description, h: f64) -> f64 {
+fn drift(description: &Subject, h: f64) -> f64 {
     let bounds = nominal(&description.clone().observing(&["energy"]).step(h));
     let energy = &bounds.outputs[0].nominal;
     largest(energy.iter().map(|value| value - energy[0]))

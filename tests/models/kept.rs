@@ -1,10 +1,8 @@
 //! Surrogates that are kept after a run: what they say anywhere in the box, against simulations there.
 
-use mbint::inner::model::{Description, ParameterValue};
 use mbint::inner::study::{self, Kept, Options};
-use symdiff::Formula;
 
-use crate::common::{Vary, nominal, read, run};
+use crate::common::{Subject, read, run};
 
 /// Three outputs, of which one is a reaction; a second mechanism that does not interact.
 const TWO: &str = "
@@ -31,21 +29,9 @@ outputs: { x: slider.x, angle: crank.angle, force: pin.force, height: ball.y }
 simulation: { duration: 0.4, step: 1e-3, output_step: 0.05 }
 ";
 
-fn kept(description: &Description, threads: usize) -> Kept {
+fn kept(description: &Subject, threads: usize) -> Kept {
     let options = Options { threads: Some(threads), ..Options::default() };
-    study::run_keeping(description, options).unwrap().2.expect("a surrogate")
-}
-
-/// The model with its uncertain parameters at these values.
-fn at(mut description: Description, values: &[f64]) -> Description {
-    let mut values = values.iter();
-    for parameter in &mut description.parameters {
-        if let ParameterValue::Interval { .. } = parameter.value {
-            parameter.value = ParameterValue::Formula(Formula::number(*values.next().unwrap()));
-        }
-    }
-    description.bounds = Default::default();
-    description
+    study::run_keeping(description.study().description(), options).unwrap().2.expect("a surrogate")
 }
 
 const SAMPLES: [[f64; 3]; 4] =
@@ -57,20 +43,22 @@ fn agrees(text: &str, tolerance: f64) {
     let description = read(text);
     let kept = kept(&description, 2);
     let evaluator = kept.evaluator().unwrap();
+    let step = if tolerance > 0.0 { 1e-4 } else { 1e-3 };
+    let truths = description.study().step(step).sample(&SAMPLES.map(Vec::from)).unwrap();
     let every = [0, 1, 2, 3];
-    let truths: Vec<_> = SAMPLES
-        .iter()
-        .map(|sample| nominal(&at(description.clone(), sample).step(if tolerance > 0.0 { 1e-4 } else { 1e-3 })))
-        .collect();
+    let courses = every.map(|output| {
+        let name = truths.outputs().nth(output).unwrap().0;
+        [0, 1, 2, 3].map(|sample| truths.course(sample, name).unwrap())
+    });
     let span = |output: usize| {
-        let nominal = &truths[0].outputs[output].nominal;
+        let nominal = &courses[output][0];
         nominal.iter().fold(0.0_f64, |most, value| most.max((value - nominal[0]).abs()))
     };
     for (row, time) in kept.times().iter().enumerate() {
         let values = evaluator.values(row, &every, &SAMPLES);
         for output in every {
-            for (index, truth) in truths.iter().enumerate() {
-                let (found, truth) = (values[output * SAMPLES.len() + index], truth.outputs[output].nominal[row]);
+            for (index, truth) in courses[output].iter().enumerate() {
+                let (found, truth) = (values[output * SAMPLES.len() + index], truth[row]);
                 let error = kept.error(output).total[row];
                 let allowed = error + tolerance * span(output) + 1e-12;
                 assert!((found - truth).abs() <= allowed, "{time}, {output}, {index}: {found} {truth} {error}");
@@ -105,6 +93,6 @@ fn the_same_bits_for_any_number_of_threads() {
 #[test]
 fn keeping_changes_no_bound() {
     let description = read(&format!("{TWO}bounds: {{ chebyshev: {{ order: 2 }} }}"));
-    let (kept, ..) = study::run_keeping(&description, Options::default()).unwrap();
+    let (kept, ..) = study::run_keeping(description.study().description(), Options::default()).unwrap();
     assert_eq!(kept, run(&description));
 }

@@ -2,7 +2,7 @@
 //! the velocities follow to second order.
 
 use crate::common::measured::Case;
-use crate::common::{Vary, curve, distance_from, largest, model, nominal, order, read, reference, row};
+use crate::common::{curve, distance_from, largest, model, nominal, order, read, reference, row};
 use std::f64::consts::{PI, TAU};
 
 /// Newton's tolerance (1e-11 of the model's size) times what the closed forms' slopes make of it.

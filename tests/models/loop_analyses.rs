@@ -1,23 +1,22 @@
 //! Loops in joint coordinates beyond plain motions: redundant constraints, equilibria, small vibrations, the explicit
 //! method, enclosures.
 
-use mbint::inner::methods::{Certified, Proof};
-use mbint::inner::model::{Description, Formulation, SchemeChoice};
-use mbint::inner::study;
 use mbint::results::{Bounds, Method};
+use mbint::{Formulation, SchemeChoice, Study};
 
-use crate::common::{Vary, band, curve, distance, largest, model, nominal, output, read, richardson, run, run_methods};
+use crate::common::{
+    Subject, band, curve, distance, largest, model, nominal, output, read, richardson, run, run_methods,
+};
 use crate::statics::{close, value};
 
 const FORMULATIONS: [Formulation; 2] = [Formulation::Absolute, Formulation::Joint];
 
-fn within(mut description: Description, formulation: Formulation) -> Description {
-    description.simulation.formulation = formulation;
-    description
+fn within(description: Subject, formulation: Formulation) -> Subject {
+    description.formulation(formulation)
 }
 
 /// A four-bar linkage that hangs on a spring.
-fn four_bar(analysis: &str, bounds: &str) -> Description {
+fn four_bar(analysis: &str, bounds: &str) -> Subject {
     read(&format!(
         "
 analysis: {analysis}
@@ -64,9 +63,9 @@ fn agree(bounds: [&Bounds; 2], methods: &[Method], allowed: f64) {
 #[test]
 fn a_redundant_loop_moves_alike() {
     let description = model("bricard").duration(1.0).rows_every(0.1);
-    let simulators = FORMULATIONS.map(|formulation| study::prepare(&within(description.clone(), formulation)).unwrap());
-    for simulator in &simulators {
-        assert_eq!((simulator.mobility.redundant.len(), simulator.mobility.degrees_of_freedom), (1, 1));
+    for formulation in FORMULATIONS {
+        let explained = within(description.clone(), formulation).study().explain().unwrap();
+        assert_eq!((explained.redundant_constraints.len(), explained.degrees_of_freedom), (1, 1));
     }
     let ends = FORMULATIONS.map(|formulation| {
         let runs = [2e-3, 1e-3].map(|h| nominal(&within(description.clone(), formulation).step(h)));
@@ -88,11 +87,8 @@ fn equilibria_of_loops_are_alike() {
 #[test]
 fn loops_vibrate_alike() {
     let text = "chebyshev: { order: 4 }";
-    let bounds = FORMULATIONS.map(|formulation| {
-        let mut description = within(four_bar("modes", text), formulation);
-        description.mechanism_mut().starts_at_equilibrium = true;
-        run(&description)
-    });
+    let bounds =
+        FORMULATIONS.map(|formulation| run(&within(four_bar("modes\ninitial: equilibrium", text), formulation)));
     let [absolute, joint] = [0, 1].map(|index: usize| value(&bounds[index], "mode1.frequency"));
     assert!(absolute > 0.1);
     close(joint, absolute, 1e-9);
@@ -110,8 +106,7 @@ fn the_explicit_method_moves_loops_alike() {
     for name in ["slider_crank", "spatial_four_bar", "excavator"] {
         let description = model(name).at_most(0.5).rows_every(0.05);
         let bounds = FORMULATIONS.map(|formulation| {
-            let mut description = within(description.clone(), formulation).tolerance(1e-7);
-            description.simulation.scheme = SchemeChoice::Explicit;
+            let description = within(description.clone(), formulation).tolerance(1e-7).scheme(SchemeChoice::Explicit);
             let (bounds, summary) = run_methods(&description, Some(Vec::new()));
             assert_eq!(summary.integration.as_deref(), Some("Dormand–Prince 8(5,3), explicit"));
             bounds
@@ -125,11 +120,10 @@ fn the_explicit_method_moves_loops_alike() {
 #[test]
 fn enclosures_of_loops_hold_every_sample() {
     let loops = within(model("slider_crank_one").duration(0.1).rows_every(0.01).scan(21), Formulation::Joint);
-    assert!(!study::prepare(&loops).unwrap().system.formulation.cut.is_empty());
-    let mut explicit = loops.clone().tolerance(1e-11);
-    explicit.simulation.scheme = SchemeChoice::Explicit;
-    for (proof, mut description) in [(Proof::Scheme, loops), (Proof::Motion, explicit)] {
-        description.bounds.certified = Some(Certified { proof });
+    let explained = loops.study().explain().unwrap();
+    assert!(explained.formulation.contains("; loops are cut at "), "{}", explained.formulation);
+    let explicit = loops.clone().tolerance(1e-11).scheme(SchemeChoice::Explicit);
+    for description in [loops.asking(Study::certified_scheme), explicit.asking(Study::certified)] {
         let (bounds, _) = run_methods(&description, Some(vec![Method::Scan, Method::Certified]));
         assert_held(&bounds);
     }

@@ -1,23 +1,22 @@
 //! Which joint of a loop is cut: by it a step becomes as short as is found, and the motion does not change.
 
+use mbint::Formulation;
 use mbint::inner::assemble::{self, Questions};
 use mbint::inner::compile::Scheme;
-use mbint::inner::model::{Description, Formulation};
 use mbint::inner::reduce::Reduction;
 use mbint::inner::simulate::Simulator;
 use mbint::inner::study;
 use mbint::results::Method;
 
 use crate::common::{
-    Vary, band, curve, distance, largest, load, model, model_files, nominal, output, read, richardson, run,
+    Subject, band, curve, distance, largest, load, model, model_files, nominal, output, read, richardson, run,
 };
 
 /// Step for which programs are compiled, s; their length does not depend on it.
 const STEP: f64 = 1e-3;
 
-fn within(mut description: Description, formulation: Formulation) -> Description {
-    description.simulation.formulation = formulation;
-    description
+fn within(description: Subject, formulation: Formulation) -> Subject {
+    description.formulation(formulation)
 }
 
 /// Instructions of a step with one correction.
@@ -25,8 +24,14 @@ fn instructions(simulator: &Simulator) -> usize {
     simulator.program.instructions()
 }
 
-fn cut(description: &Description, simulator: &Simulator) -> Vec<String> {
-    simulator.system.formulation.cut.iter().map(|&joint| description.joints[joint].name.clone()).collect()
+fn cut(description: &Subject, simulator: &Simulator) -> Vec<String> {
+    simulator
+        .system
+        .formulation
+        .cut
+        .iter()
+        .map(|&joint| description.study().description().joints[joint].name.clone())
+        .collect()
 }
 
 #[test]
@@ -34,24 +39,29 @@ fn no_cut_is_longer_than_that_of_the_shallowest_trees() {
     let mut shorter = Vec::new();
     for path in model_files() {
         let description = within(load(&path), Formulation::Joint);
-        let whole = Reduction::joined(&description);
+        let study = description.study();
+        let whole = Reduction::joined(study.description());
         let questions = Questions { merged: whole.merged.clone().into(), ..Questions::of(&whole.description) };
         let shallow = assemble::in_joint_coordinates(&questions, None, None).unwrap();
         let Some(shallow) = shallow.ok().filter(|system| !system.formulation.cut.is_empty()) else { continue };
-        let scheme = Scheme::Hht { alpha: description.simulation.alpha };
+        let scheme = Scheme::Hht { alpha: study.description().simulation.alpha };
         let shallow = Simulator::new(shallow, scheme, STEP).unwrap();
-        let chosen = study::prepare(&description).unwrap();
+        let chosen = study::prepare(study.description()).unwrap();
         let [before, after] = [&shallow, &chosen].map(instructions);
-        println!("{}: {before} instructions, then {after}, cut at {:?}", description.name, cut(&description, &chosen));
-        assert!(after <= before, "{}: {after} instructions instead of {before}", description.name);
+        println!(
+            "{}: {before} instructions, then {after}, cut at {:?}",
+            description.name(),
+            cut(&description, &chosen)
+        );
+        assert!(after <= before, "{}: {after} instructions instead of {before}", description.name());
         if after < before {
-            shorter.push((description.name.clone(), cut(&description, &chosen)));
+            shorter.push((description.name().to_owned(), cut(&description, &chosen)));
         }
     }
     let cut_of = |name: &str| shorter.iter().find(|(known, _)| known == name).map(|(_, cut)| cut.join(" "));
     // With both cylinders in the trees their lengths are coordinates, which the motors prescribe.
     assert_eq!(cut_of("excavator").as_deref(), Some("boom_eye stick_eye"));
-    let excavator = study::prepare(&model("excavator")).unwrap();
+    let excavator = study::prepare(model("excavator").study().description()).unwrap();
     assert!(excavator.system.formulation.joint && instructions(&excavator) < 800);
 }
 
@@ -102,7 +112,7 @@ bounds: {{ }}
 fn loops_are_cut_where_friction_needs_the_reaction() {
     for joint in ["A", "B", "C", "D"] {
         let description = read(&rubbing(joint));
-        let chosen = study::prepare(&within(description.clone(), Formulation::Joint)).unwrap();
+        let chosen = study::prepare(within(description.clone(), Formulation::Joint).study().description()).unwrap();
         assert_eq!(cut(&description, &chosen), [joint]);
         let [absolute, in_joint] = [Formulation::Absolute, Formulation::Joint].map(|formulation| {
             let runs = [1e-3, 5e-4].map(|h| nominal(&within(description.clone(), formulation).step(h)));

@@ -1,27 +1,25 @@
 //! Loops in joint coordinates: where a loop can branch off, the row of its closure vanishes, and rounding is all that
 //! is left of it.
 
-use mbint::inner::model::{Description, Formulation};
-use mbint::inner::study::{self, Options};
+use mbint::Formulation;
 use mbint::results::Method;
 
-use crate::common::{Vary, curve, distance, largest, nominal, output, read, richardson, run_methods};
+use crate::common::{Subject, curve, distance, largest, nominal, output, read, richardson, run_methods};
 use crate::singular::{one_crank, parallelogram};
 
-fn within(mut description: Description, formulation: Formulation) -> Description {
-    description.simulation.formulation = formulation;
-    description
+fn within(description: Subject, formulation: Formulation) -> Subject {
+    description.formulation(formulation)
 }
 
-fn in_joint(text: &str) -> Description {
+fn in_joint(text: &str) -> Subject {
     within(read(text), Formulation::Joint)
 }
 
 #[test]
 fn a_flat_start_runs_in_joint_coordinates_too() {
     let description = in_joint(&parallelogram(2, 0.0, 1.0));
-    let simulator = study::prepare(&description).unwrap();
-    assert!(simulator.mobility.redundant.is_empty() && !simulator.mobility.singular_at_start.is_empty());
+    let explained = description.study().explain().unwrap();
+    assert!(explained.redundant_constraints.is_empty() && !explained.singular_at_start.is_empty());
     for h in [1e-3, 2.5e-4, 1e-4] {
         let (bounds, summary) = run_methods(&description.clone().step(h), None);
         assert_eq!(summary.failure, None, "h = {h}");
@@ -40,8 +38,8 @@ fn a_start_folded_over_is_singular_but_for_rounding() {
         .replace("c1.angle: 0", "c1.angle: 180 deg")
         .replace("simulation:", "guess: { bar.x: -0.5, bar.y: 0 }\nsimulation:");
     let description = in_joint(&text);
-    let simulator = study::prepare(&description).unwrap();
-    assert!(simulator.mobility.redundant.is_empty() && !simulator.mobility.singular_at_start.is_empty());
+    let explained = description.study().explain().unwrap();
+    assert!(explained.redundant_constraints.is_empty() && !explained.singular_at_start.is_empty());
     let (bounds, summary) = run_methods(&description, Some(Vec::new()));
     assert_eq!(summary.failure, None);
     let end = *curve(&bounds, "angle").last().unwrap();
@@ -168,8 +166,8 @@ fn auto_closes_loops_in_the_branch_of_absolute_coordinates() {
             }
         }
     }
-    let chosen = study::prepare(&read(&four_bar([0.4, 0.1, 0.35, 0.3], [0.5, 0.3, 1.5], 1.0))).unwrap();
-    assert!(chosen.system.formulation.joint, "{}", chosen.system.formulation.why);
+    let chosen = read(&four_bar([0.4, 0.1, 0.35, 0.3], [0.5, 0.3, 1.5], 1.0)).study().explain().unwrap();
+    assert!(chosen.formulation.starts_with("joint coordinates"), "{}", chosen.formulation);
 }
 
 /// Two loops that share a rocker, one of them with a slider, and a gear between cranks.
@@ -209,9 +207,7 @@ bounds: { }
 fn options_of_runs_do_not_matter_to_loops() {
     // The same bits for any number of threads, through flat positions.
     let description = in_joint(&parallelogram(2, 1.0, -8.0)).duration(0.5);
-    let [one, two] = [1, 2].map(|threads| {
-        let options = Options { methods: Some(vec![Method::Scan]), threads: Some(threads), ..Options::default() };
-        study::run(&description, options).unwrap().0
-    });
+    let [one, two] = [1, 2]
+        .map(|threads| description.study().methods(&[Method::Scan]).threads(threads).run().unwrap().bounds().clone());
     assert_eq!(format!("{:?}", output(&one, "angle").bands), format!("{:?}", output(&two, "angle").bands));
 }

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use crate::common::{Vary, curve, distance_from, largest, model, nominal, order};
+use crate::common::{curve, distance_from, largest, model, nominal, order};
 
 /// Newton's tolerance (1e-11 of the model's size) times what the closed forms' slopes make of it.
 const CLOSED: f64 = 1e-9;

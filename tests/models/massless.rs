@@ -1,7 +1,7 @@
 //! Bodies without mass: joints or springs determine where they are.
 
 use crate::common::closed_forms::assert_converges;
-use crate::common::{Vary, curve, distance, distance_from, nominal, order, read, refused, study_of};
+use crate::common::{curve, distance, distance_from, nominal, order, read, refused, study_of};
 
 /// Two springs in series are one of stiffness k₁k₂/(k₁ + k₂), and the node between them divides what they stretch.
 #[test]

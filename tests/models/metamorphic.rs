@@ -1,10 +1,9 @@
 //! What bounds must not depend on, by any method: where the origin is, the order of the parameters, the units, and
 //! which way round the mechanism is built.
 
-use mbint::inner::model::Description;
 use mbint::results::{Bounds, Method};
 
-use crate::common::{band, output, read, run};
+use crate::common::{Subject, band, output, read, run};
 use crate::honesty_search::{assert_honest, oscillators, sum};
 
 /// Every method, and a degree that follows from a tolerance.
@@ -95,7 +94,7 @@ fn of_oscillators_with_bands_full_of_turns() {
 
 /// A slider crank on a spring, whose bearing is at `origin`: lengths times `scale`, parameters in this order, seen from
 /// behind where `side` is −1.
-fn slider_crank(origin: (f64, f64), scale: f64, side: f64, parameters: [usize; 2], bounds: &str) -> Description {
+fn slider_crank(origin: (f64, f64), scale: f64, side: f64, parameters: [usize; 2], bounds: &str) -> Subject {
     let uncertain = [
         format!("  l1: {{ value: {}, unit: m, tolerance: 2% }}\n", 0.17 * scale),
         format!("  tau: {{ value: {}, unit: N*m, tolerance: 4% }}\n", 0.6 * side * scale * scale),

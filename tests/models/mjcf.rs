@@ -5,10 +5,10 @@
 
 use std::path::{Path, PathBuf};
 
-use mbint::inner::model::{self, Description, Reading};
+use mbint::{Error, Model};
 
 use crate::common::measured::Case;
-use crate::common::{Findings, curve, distance, largest, load, nominal, row, rows};
+use crate::common::{Findings, Subject, curve, distance, largest, load, nominal, row, rows};
 
 /// Files of the tests with commands to their actuators.
 const ROBOTS: [(&str, &str); 15] = [
@@ -44,15 +44,15 @@ fn folder() -> PathBuf {
 }
 
 /// A model that names a file of a folder.
-fn model_of(folder: &Path, name: &str, yaml: &str) -> Reading {
+fn model_of(folder: &Path, name: &str, yaml: &str) -> Result<Model, Error> {
     let text = format!("mjcf: {name}.xml\n{yaml}\nsimulation: {{ duration: 1, step: 5e-4, output_step: 0.05 }}\n");
     let path = folder.join("model.yaml");
-    model::read_str(&path.display().to_string(), &text, &[])
+    Model::from_yaml_str(&path.display().to_string(), &text)
 }
 
 #[track_caller]
-fn description(reading: Reading) -> Description {
-    reading.description.unwrap_or_else(|| panic!("{}", reading.diagnostics))
+fn description(reading: Result<Model, Error>) -> Subject {
+    reading.unwrap_or_else(|error| panic!("{error}")).into()
 }
 
 #[test]
@@ -84,7 +84,7 @@ impl Files {
         Self(folder)
     }
 
-    fn with(&self, yaml: &str) -> Reading {
+    fn with(&self, yaml: &str) -> Result<Model, Error> {
         model_of(self.0.path(), "robot", yaml)
     }
 }
@@ -96,20 +96,21 @@ const PENDULUM: &str = "<mujoco><worldbody><body name='arm'><joint name='hinge' 
 fn a_file_by_itself_is_a_model() {
     let files = Files::new(PENDULUM);
     let description = load(&files.0.path().join("robot.xml"));
-    assert_eq!(description.outputs[0].name, "hinge");
-    assert_eq!(description.bodies.len(), 2);
+    assert_eq!(description.model.outputs().next().unwrap().0, "hinge");
+    assert_eq!(description.study().description().bodies.len(), 2);
 }
 
 #[test]
 fn only_numbers_that_are_named_are_parameters() {
     let files = Files::new(PENDULUM);
     let none = description(files.with(""));
-    assert!(none.parameters.is_empty());
+    assert!(none.study().description().parameters.is_empty());
     let found = description(files.with("parameters: { body.arm.mass: 5%, joint.hinge.damping: [0.05, 0.2] }"));
-    let mut names: Vec<&str> = found.parameters.iter().map(|parameter| parameter.name.as_str()).collect();
+    let study = found.study();
+    let mut names: Vec<&str> = study.description().parameters.iter().map(|parameter| parameter.name.as_str()).collect();
     names.sort_unstable();
     assert_eq!(names, ["body.arm.mass", "joint.hinge.damping"]);
-    assert_eq!(found.uncertain().count(), 2);
+    assert_eq!(found.uncertain_count(), 2);
 }
 
 /// The mass of a body without damping does not change how it swings: its inertia is in proportion.
@@ -203,8 +204,6 @@ fn a_crane_moves_as_mujoco_says() {
 fn a_drive_has_one_damping() {
     let drive = "<actuator><position joint='hinge' kp='3' kv='1' dampratio='1'/></actuator></mujoco>";
     let files = Files::new(&PENDULUM.replace("</mujoco>", drive));
-    let reading = files.with("");
-    assert!(reading.description.is_none());
-    let message = reading.diagnostics.to_string();
+    let message = files.with("").unwrap_err().to_string();
     assert!(message.contains("an actuator has `kv` or `dampratio`"), "{message}");
 }

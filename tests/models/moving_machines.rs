@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use crate::common::dormand_prince::dormand_prince;
-use crate::common::{Vary, curve, distance, distance_from, model, nominal, order};
+use crate::common::{curve, distance, distance_from, model, nominal, order};
 
 /// Newton's tolerance (1e-11 of the model's size) times what the closed forms' slopes make of it.
 const CLOSED: f64 = 1e-9;

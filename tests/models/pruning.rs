@@ -3,22 +3,17 @@
 
 use std::fmt::Write as _;
 
+use mbint::Study;
 use mbint::inner::compile::Tapes;
 use mbint::inner::export::bounds_csv;
-use mbint::inner::model::{self, Description};
-use mbint::inner::study::{self, Options};
-use mbint::results::{Bounds, Method};
-use mbint::results::{MethodSummary, Summary};
+use mbint::inner::study;
+use mbint::results::{Bounds, Method, MethodSummary, Summary};
 
-fn read(text: &str) -> Description {
-    model::load_str("test", text, &[]).unwrap_or_else(|diagnostics| panic!("{diagnostics}"))
-}
+use crate::common::{Subject, read, run_methods};
 
 #[track_caller]
-fn run(description: &Description) -> (Bounds, Summary) {
-    let (bounds, summary) = study::run(description, Options { threads: Some(2), ..Options::default() }).unwrap();
-    assert_eq!(summary.failure, None);
-    (bounds, summary)
+fn run(description: &Subject) -> (Bounds, Summary) {
+    run_methods(description, None)
 }
 
 fn csv(bounds: &Bounds) -> String {
@@ -26,8 +21,8 @@ fn csv(bounds: &Bounds) -> String {
 }
 
 /// Instructions of every tape.
-fn instructions(description: &Description) -> [usize; 10] {
-    let simulator = study::prepare(description).unwrap();
+fn instructions(description: &Subject) -> [usize; 10] {
+    let simulator = study::prepare(description.study().description()).unwrap();
     let (p, s) = (&simulator.program, &simulator.start);
     [
         p.sample().len(),
@@ -74,7 +69,7 @@ impl Sections {
         all
     }
 
-    fn model(&self) -> Description {
+    fn model(&self) -> Subject {
         let Self { parameters, ground, bodies, joints, effects, initial, outputs, simulation, bounds } = self;
         read(&format!(
             "model: test\nparameters:\n{parameters}bodies:\n  ground: {{ points: {{ O: [0, 0]{ground} }} }}\n{bodies}\
@@ -315,7 +310,8 @@ fn welded_bodies_are_one_where_nothing_asks_for_the_weld() {
         for ((name, coarse), (_, fine)) in across("1e-3").iter().zip(&across("5e-4")) {
             assert!(*fine < 0.3 * coarse || *fine < 1e-9, "{name}: {coarse}, {fine}");
         }
-        let sizes = |weld: bool| study::prepare(&model("absolute", "1e-3", weld)).unwrap().system.q.len();
+        let sizes =
+            |weld: bool| study::prepare(model("absolute", "1e-3", weld).study().description()).unwrap().system.q.len();
         assert_eq!((sizes(false), sizes(true)), unknowns);
     }
 }
@@ -382,7 +378,7 @@ simulation: {{ duration: 1, step: 1e-3, formulation: absolute }}
 "
         ))
     };
-    let simulator = study::prepare(&sliders("inertia: 0.3")).unwrap();
+    let simulator = study::prepare(sliders("inertia: 0.3").study().description()).unwrap();
     let (program, system) = (&simulator.program, &simulator.system);
     let constant = |simulator: &mbint::inner::simulate::Simulator| {
         let system = &simulator.system;
@@ -396,7 +392,7 @@ simulation: {{ duration: 1, step: 1e-3, formulation: absolute }}
     assert_eq!((program.factor().len(), watched), (0, 0));
     assert!(program.sample().len() + program.step_size().len() > 0);
     // With a centre of mass off the frame's origin M depends on the angle, and the matrix with it.
-    let simulator = study::prepare(&sliders("inertia: 0.3, center_of_mass: [0.1, 0]")).unwrap();
+    let simulator = study::prepare(sliders("inertia: 0.3, center_of_mass: [0.1, 0]").study().description()).unwrap();
     assert!(!constant(&simulator) && !simulator.program.factor().is_empty());
 }
 
@@ -405,7 +401,7 @@ fn every_decision_is_explained_with_what_it_saves() {
     let (a, b, c) =
         (pendulum("a", 0.0, ", tolerance: 2%"), pendulum("b", 0.3, ", tolerance: 1%"), pendulum("c", 0.1, ""));
     let model = a.with(&b).with(&c).with(&chain_of_ten()).model();
-    let explanation = study::explain(&model).unwrap();
+    let explanation = model.study().explain().unwrap();
     let find = |what: &str| {
         let decision = explanation.decisions.iter().find(|decision| decision.what.contains(what));
         decision.unwrap_or_else(|| panic!("{what}: {:#?}", explanation.decisions))
@@ -430,11 +426,11 @@ fn every_decision_is_explained_with_what_it_saves() {
     assert_eq!(left_out("joint idle_joint3"), Some("no output depends on it"));
 
     let welded = read(&WELDED.replace("FORMULATION", "absolute").replace("STEP", "1e-3"));
-    let explanation = study::explain(&welded).unwrap();
+    let explanation = welded.study().explain().unwrap();
     let merged = explanation.decisions.iter().find(|decision| decision.what.contains("are one: weld")).unwrap();
     let mut kept = WELDED.replace("FORMULATION", "absolute").replace("STEP", "1e-3");
     kept = kept.replace("load: hinge.force,", "load: hinge.force, weld: weld.force,");
-    let explanation = study::explain(&read(&kept)).unwrap();
+    let explanation = read(&kept).study().explain().unwrap();
     let stays = explanation.decisions.iter().find(|decision| decision.what == "bodies of joint weld stay two").unwrap();
     assert_eq!((stays.why.as_str(), stays.saves), ("its reaction is needed", None));
     let count = |text: &str| -> i64 { instructions(&read(text))[2..6].iter().sum::<usize>() as i64 };
@@ -469,7 +465,7 @@ fn locking(outputs: &str) -> Sections {
 #[test]
 fn an_island_that_stops_leaves_the_others_alone() {
     let free = pendulum("a", 0.0, ", tolerance: 2%");
-    let run = |model: &Description| study::run(model, Options { threads: Some(2), ..Options::default() }).unwrap();
+    let run = |model: &Subject| model.finished(None);
     let mut both = locking("  rocker: rocker.angle\n").with(&free);
     both.initial += "  crank.angle: 0.5\n";
     let (bounds, summary) = run(&both.model());
@@ -508,9 +504,9 @@ fn with_parts_of_the_box_left_out_there_is_one_island() {
     };
     slider.add(&pendulum("a", 0.0, ", tolerance: 2%"));
     let model = slider.model();
-    let refused = study::run(&model, Options::default()).unwrap_err().to_string();
+    let refused = model.refused();
     assert!(refused.contains("cannot be closed") && refused.contains("rod"), "{refused}");
-    let (bounds, summary) = study::run(&model, Options { skip_infeasible: true, ..Options::default() }).unwrap();
+    let (bounds, summary) = model.asking(Study::skip_infeasible).finished(None);
     assert!(summary.subsystems.is_empty() && !summary.pieces.is_empty());
     assert!(summary.pieces.iter().all(|piece| piece.lower.len() == 2), "{:?}", summary.pieces);
     // Of 0.25 m, 0.05 are too short.
@@ -559,7 +555,7 @@ bounds: {{ scan: {{ points: 3 }} }}
 "
         ))
     };
-    let ends = |description: &Description, name: &str| {
+    let ends = |description: &Subject, name: &str| {
         let bounds = run(description).0;
         let output = bounds.outputs.iter().find(|output| output.name == name).unwrap();
         (output.bands[0].lower[3], output.bands[0].upper[3])

@@ -1,11 +1,9 @@
 //! Reduced outputs and requirements of parts that move on their own: each part is simulated alone, with its own
 //! parameters.
 
-use mbint::inner::model::Description;
-use mbint::inner::study;
 use mbint::results::{Summary, Verdict};
 
-use crate::common::{curve, read, run_methods};
+use crate::common::{Subject, curve, read, run_methods};
 
 /// Oscillators x = A cos(ωt), ω² = k/m, each with its own amplitude and stiffness.
 const BODIES: [&str; 2] = [
@@ -35,7 +33,7 @@ const QUESTIONS: [[&str; 3]; 2] = [
 ];
 
 /// Sections of parts of the model; `more` outputs, requirements and statistics.
-fn model(parts: &[usize], more: [&str; 3]) -> Description {
+fn model(parts: &[usize], more: [&str; 3]) -> Subject {
     let mut text = String::new();
     for section in ["parameters", "bodies", "effects", "initial"] {
         let of = |&part: &usize| {
@@ -168,10 +166,9 @@ fn who_does_not_ask_does_not_pay() {
     let plain = text("", "");
     let asked = text(reduced, "requirements: { slow1: fast1 <= 0.9 m/s }\n");
     let statistics = text("", "statistics: { quantiles: [5%, 95%] }\n");
-    let tapes = |description: &Description| {
-        let program = study::prepare(description).unwrap().program;
-        [program.step(), program.factor(), program.first_correction(), program.advance()]
-            .map(|tape| tape.len_where(true))
+    let tapes = |description: &Subject| {
+        let counts = description.study().explain().unwrap().instructions;
+        [counts.step, counts.factor, counts.first_correction, counts.advance]
     };
     assert_eq!(tapes(&plain), tapes(&statistics));
     assert_eq!(tapes(&plain), tapes(&asked));

@@ -1,12 +1,11 @@
 //! Random excitations, against Lyapunov's equation, closed forms of linear systems, the stationary law of Duffing's
 //! oscillator and Rice's formula.
 
-use mbint::inner::model::Description;
 use mbint::results::{Bounds, StatisticsResult, Summary, YieldSummary};
 
-use crate::common::{load, output, read, run_methods};
+use crate::common::{Subject, load, output, read, run_methods};
 
-fn run(text: &str) -> (Description, Bounds, Summary) {
+fn run(text: &str) -> (Subject, Bounds, Summary) {
     let model = read(text);
     let (bounds, summary) = run_methods(&model, None);
     (model, bounds, summary)

@@ -2,13 +2,21 @@
 
 use std::f64::consts::PI;
 
-use mbint::inner::model::{self, Description, Override};
 use mbint::results::{ReducedBand, ReducedSummary, RequirementSummary, Summary, Verdict};
 
-use crate::common::{read, run_methods};
+use crate::common::{Subject, load, read, run_methods};
 
-fn summary(description: &Description) -> Summary {
+fn summary(description: &Subject) -> Summary {
     run_methods(description, None).1
+}
+
+/// With parameters set as after `--set`.
+#[track_caller]
+fn set(description: Subject, settings: &[impl AsRef<str>]) -> Subject {
+    settings.iter().fold(description, |found, setting| {
+        let (name, value) = setting.as_ref().split_once('=').unwrap();
+        found.with(name, value)
+    })
 }
 
 #[track_caller]
@@ -90,9 +98,7 @@ fn verdicts_follow_from_bounds_and_samples() {
     let nearest = narrow.nearest.as_ref().unwrap();
     assert!(nearest.corner && (nearest.margin - (0.2 - 2.0 * 0.412 * 16_f64.to_radians().sin())).abs() < 1e-7);
     assert!((narrow.percent.unwrap() - 100.0 * narrow.margin / 0.2).abs() < 1e-9);
-    let settings: Vec<Override> = nearest.settings.iter().map(|text| Override::parse(text).unwrap()).collect();
-    let shown = model::load_str("test", PENDULUM, &settings).unwrap();
-    let shown = run_methods(&shown, None).1;
+    let shown = run_methods(&set(read(PENDULUM), &nearest.settings), None).1;
     let shown = requirement(&shown, "narrow");
     assert_eq!(shown.verdict, Verdict::Violated);
     assert!((shown.margin - nearest.margin).abs() < 1e-9);
@@ -301,10 +307,7 @@ fn what_is_not_asked_for_is_not_there() {
 #[test]
 fn the_tutorials_four_bar_is_decided() {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/examples/four_bar_drawing.yaml");
-    let run = |settings: &[&str]| {
-        let settings: Vec<Override> = settings.iter().map(|text| Override::parse(text).unwrap()).collect();
-        summary(&model::load(&path, &settings).unwrap())
-    };
+    let run = |settings: &[&str]| summary(&set(load(&path), settings));
     let drawn = run(&[]);
     assert_eq!(drawn.requirements[0].verdict, Verdict::Violated);
     let two: Vec<&str> = drawn.reduced[0].contributions[..2].iter().map(|own| own.parameter.as_str()).collect();

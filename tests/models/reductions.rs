@@ -2,10 +2,9 @@
 
 use mbint::inner::compile::Tapes;
 use mbint::inner::export::bounds_csv;
-use mbint::inner::model::Description;
 use mbint::inner::study;
 
-use crate::common::{read, run_methods};
+use crate::common::{Subject, read, run_methods};
 
 /// x = A cos(ωt), ω² = k/m: no damping, from rest.
 const OSCILLATOR: &str = "
@@ -123,8 +122,8 @@ fn every_reduction_is_that_of_its_closed_form() {
 }
 
 /// Instructions of every tape.
-fn instructions(description: &Description) -> Vec<usize> {
-    let simulator = study::prepare(description).unwrap();
+fn instructions(description: &Subject) -> Vec<usize> {
+    let simulator = study::prepare(description.study().description()).unwrap();
     let p = &simulator.program;
     let tapes = [p.sample(), p.step_size(), p.step(), p.factor(), p.correct(), p.advance(), p.observe(), p.matrix()];
     tapes.map(|tape| tape.len()).to_vec()

@@ -1,15 +1,12 @@
 //! A run is a function of its model: the same bytes whatever the number of threads, and each time.
 
-use mbint::inner::export::bounds_csv;
-use mbint::inner::model::Description;
-use mbint::inner::study::{self, Options};
+use crate::common::{Subject, load, model, model_files};
 
-use crate::common::{Vary, load, model, model_files};
-
-fn bytes(description: &Description, threads: usize) -> (Vec<u8>, String) {
-    let options = Options { threads: Some(threads), ..Options::default() };
-    let (bounds, summary) = study::run(description, options).unwrap();
-    (bounds_csv(&bounds).unwrap(), serde_json::to_string_pretty(&summary.without_seconds()).unwrap())
+/// Bounds with all parts of their errors, to the last bit, and the record of the run.
+fn bytes(description: &Subject, threads: usize) -> (String, String) {
+    let result = description.study().threads(threads).run().unwrap();
+    let summary = result.summary().clone().without_seconds();
+    (format!("{:?}", result.bounds()), serde_json::to_string_pretty(&summary).unwrap())
 }
 
 #[test]

@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use mbint::inner::model::{self, Reading};
+use mbint::{Error, Model};
 
 use crate::common::{curve, nominal};
 
@@ -20,19 +20,18 @@ impl Robot {
         Self { folder, file }
     }
 
-    fn reading(&self, yaml: &str) -> Reading {
+    fn reading(&self, yaml: &str) -> Result<Model, Error> {
         let kind = if Path::new(self.file).extension().is_some_and(|known| known == "urdf") { "urdf" } else { "mjcf" };
         let simulation = "simulation: { duration: 1e-3, step: 1e-3, output_step: 1e-3 }";
         let text = format!("{kind}: {}\n{yaml}\n{simulation}\n", self.file);
-        model::read_str(&self.folder.path().join("model.yaml").display().to_string(), &text, &[])
+        Model::from_yaml_str(&self.folder.path().join("model.yaml").display().to_string(), &text)
     }
 
     /// The first value of the output `a`.
     #[track_caller]
     fn first(&self, yaml: &str) -> f64 {
-        let reading = self.reading(yaml);
-        let description = reading.description.unwrap_or_else(|| panic!("{}", reading.diagnostics));
-        curve(&nominal(&description), "a")[0]
+        let model = self.reading(yaml).unwrap_or_else(|error| panic!("{error}"));
+        curve(&nominal(&model.into()), "a")[0]
     }
 
     /// Moments of a body about the axes of its file's frame, by a moment of 1 N m about a hinge along each.
@@ -103,9 +102,8 @@ fn a_link_without_mass_turns_against_its_inertia() {
 fn where_inertia_does_not_resist_mass_is_taken_with_a_warning() {
     for (kind, moments) in [("prismatic", [0.02; 3]), ("continuous", [0.02, 0.0, 0.02])] {
         let robot = urdf(&[link("a", 0.0, "<origin xyz='0.5 0 0'/>", moments), joint("j", kind, ["w", "a"], "")]);
-        let reading = robot.reading("outputs: { a: a.y }");
-        let message = reading.diagnostics.to_string();
-        assert!(reading.description.is_some(), "{message}");
+        let model = robot.reading("outputs: { a: a.y }").unwrap_or_else(|error| panic!("{error}"));
+        let message = model.warnings().to_string();
         assert!(message.contains("link `a` moves, but has no mass: 0.001 kg is taken"), "{message}");
     }
 }
@@ -207,7 +205,8 @@ fn an_angle_has_the_inertia_that_mujoco_computes() {
 #[test]
 fn a_mesh_says_what_is_wrong_with_it() {
     let says = |mesh: &str, message: &str| {
-        let found = Robot::new("robot.xml", &of_mesh(mesh, "")).reading("").diagnostics.to_string();
+        let found = Robot::new("robot.xml", &of_mesh(mesh, "")).reading("");
+        let found = found.map_or_else(|error| error.to_string(), |model| model.warnings().to_string());
         assert!(found.contains(message), "{mesh}: {found}");
     };
     const TETRAHEDRON: &str = "vertex='0 0 0 1 0 0 0 1 0 0 0 1'";

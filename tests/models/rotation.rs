@@ -1,13 +1,12 @@
 //! Rotations in space: what a scheme of the wrong order, or a body that is not rigid, would lose.
 
-use crate::common::{Vary, curve, largest, model, nominal, order, read, reference, richardson, row};
-use mbint::inner::model::Description;
+use crate::common::{Subject, curve, largest, model, nominal, order, read, reference, richardson, row};
 
 /// |pᵀp − 1| / 2 is a constraint like any other: Newton ends at 1e-11.
 const NORM: &str = "(a.p0^2 + a.p1^2 + a.p2^2 + a.p3^2 - 1)/2";
 
 /// A free body; its centre of mass is its origin.
-fn free(inertia: &str, omega: &str, duration: f64) -> Description {
+fn free(inertia: &str, omega: &str, duration: f64) -> Subject {
     read(&format!(
         "
 bodies: {{ a: {{ mass: 2, inertia: {inertia} }} }}
@@ -27,7 +26,7 @@ simulation: {{ duration: {duration}, step: 1e-2, output_step: 0.1 }}
 }
 
 /// Largest departure of an output from its first value, at h and h/2.
-fn drifts(description: &Description, formulas: &[&str], h: f64) -> Vec<[f64; 2]> {
+fn drifts(description: &Subject, formulas: &[&str], h: f64) -> Vec<[f64; 2]> {
     let runs = [h, 0.5 * h].map(|h| nominal(&description.clone().observing(formulas).step(h)));
     let drift = |run: &mbint::results::Bounds, name: &str| {
         let values = curve(run, name);

@@ -1,16 +1,16 @@
 //! Every file of `models/` is one that a user can run.
 
-use mbint::inner::model::{self, Description};
 use mbint::results::{Bounds, Method, Summary};
 
-use crate::common::{load, model_files};
+use crate::common::{Subject, load, model_files};
 
 #[test]
 fn every_model_is_read_without_diagnostics() {
     for path in model_files() {
-        let reading = model::read(&path, &[]);
-        assert!(reading.diagnostics.records().is_empty(), "{}", reading.diagnostics);
-        let name = load(&path).name;
+        let description = load(&path);
+        let warnings = description.model.warnings();
+        assert!(warnings.records().is_empty(), "{warnings}");
+        let name = description.name();
         assert_eq!(path.file_stem().unwrap().to_string_lossy(), name, "a model has the name of its file");
     }
 }
@@ -19,16 +19,18 @@ fn every_model_is_read_without_diagnostics() {
 const MANY: usize = 20;
 
 /// All that was asked for is there: every row of every method of every output, with bounds that are ordered.
-pub fn assert_complete(description: &Description, bounds: &Bounds, summary: &Summary) {
+pub fn assert_complete(description: &Subject, bounds: &Bounds, summary: &Summary) {
     // Bricard's loop moves because one of its constraints is implied by the others.
-    let redundant = usize::from(description.name == "bricard");
+    let redundant = usize::from(description.name() == "bricard");
     let found = &summary.redundant_constraints;
-    assert_eq!(found.len(), redundant, "{}: {found:?}", description.name);
-    assert!(!summary.parameters.is_empty(), "{} has no uncertain parameter", description.name);
-    let rows = (description.simulation.duration / description.simulation.output_step).round() as usize + 1;
-    assert_eq!(bounds.times.len(), rows, "{}", description.name);
-    assert_eq!(bounds.outputs.len(), description.outputs.len());
-    let asked = &description.bounds;
+    assert_eq!(found.len(), redundant, "{}: {found:?}", description.name());
+    assert!(!summary.parameters.is_empty(), "{} has no uncertain parameter", description.name());
+    let study = description.study();
+    let model = study.description();
+    let rows = (model.simulation.duration / model.simulation.output_step).round() as usize + 1;
+    assert_eq!(bounds.times.len(), rows, "{}", description.name());
+    assert_eq!(bounds.outputs.len(), model.outputs.len());
+    let asked = &model.bounds;
     let all = [
         (Method::Chebyshev, asked.chebyshev.is_some()),
         (Method::Taylor, asked.taylor.is_some()),
@@ -37,9 +39,9 @@ pub fn assert_complete(description: &Description, bounds: &Bounds, summary: &Sum
     let asked: Vec<Method> = all.into_iter().filter_map(|(method, asked)| asked.then_some(method)).collect();
     // Of many parameters neither a scan nor jets are to be had: samples are compared in a test of the model's own.
     let is_compared = asked.len() > 1 || (summary.parameters.len() > MANY && asked == [Method::Chebyshev]);
-    assert!(is_compared, "{}: one method is compared with nothing", description.name);
+    assert!(is_compared, "{}: one method is compared with nothing", description.name());
     for output in &bounds.outputs {
-        let what = format!("{}: {}", description.name, output.name);
+        let what = format!("{}: {}", description.name(), output.name);
         let methods: Vec<Method> = output.bands.iter().map(|band| band.method).collect();
         assert_eq!(methods, asked, "{what}");
         for band in &output.bands {

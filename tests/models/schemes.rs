@@ -2,7 +2,6 @@
 
 use mbint::inner::assemble;
 use mbint::inner::compile::Scheme;
-use mbint::inner::model::Description;
 use mbint::inner::numerics::Sample;
 use mbint::inner::simulate::{
     EnsembleRun, Integrator, Interruption, JetBox, Observed, Schedule, Simulator, Stepper, Steps, jet_integrator,
@@ -14,7 +13,7 @@ use symdiff::jet::JetSpace;
 use super::linkages::{two_loops, two_loops_reference};
 use super::singular::{one_crank, parallelogram};
 use super::slider_crank::states;
-use crate::common::{Vary, distance, largest, model, order, read, reference, richardson};
+use crate::common::{Subject, distance, largest, model, order, read, reference, richardson};
 
 const HHT: Scheme = Scheme::Hht { alpha: -0.1 };
 
@@ -26,8 +25,9 @@ const SCHEMES: [Scheme; 5] = [
     Scheme::TrapezoidalIndex2,
 ];
 
-fn compiled(description: &Description, scheme: Scheme, h: f64) -> Simulator {
-    Simulator::new(assemble::build(&assemble::Questions::of(description)).unwrap(), scheme, h).unwrap()
+fn compiled(description: &Subject, scheme: Scheme, h: f64) -> Simulator {
+    Simulator::new(assemble::build(&assemble::Questions::of(description.study().description())).unwrap(), scheme, h)
+        .unwrap()
 }
 
 fn nominal_sample(simulator: &Simulator) -> Sample {
@@ -46,16 +46,17 @@ fn courses(simulator: &Simulator, schedule: &Schedule, sample: Sample) -> Vec<Ve
 }
 
 /// The same of the nominal sample, with steps of length h.
-fn nominal(description: &Description, scheme: Scheme, h: f64) -> Vec<Vec<f64>> {
+fn nominal(description: &Subject, scheme: Scheme, h: f64) -> Vec<Vec<f64>> {
     let simulator = compiled(description, scheme, h);
-    let simulation = &description.simulation;
+    let study = description.study();
+    let simulation = &study.description().simulation;
     let schedule = Schedule::fixed(simulation.duration, h, simulation.output_step);
     let sample = nominal_sample(&simulator);
     courses(&simulator, &schedule, sample)
 }
 
 /// Errors at h, at h/2, and of what they extrapolate to, against (row, output, exact value).
-fn errors(description: &Description, scheme: Scheme, h: f64, exact: &[(usize, usize, f64)]) -> [f64; 3] {
+fn errors(description: &Subject, scheme: Scheme, h: f64, exact: &[(usize, usize, f64)]) -> [f64; 3] {
     let [coarse, fine] = [h, 0.5 * h].map(|h| nominal(description, scheme, h));
     let limit: Vec<Vec<f64>> = coarse.iter().zip(&fine).map(|(coarse, fine)| richardson(coarse, fine)).collect();
     [coarse, fine, limit].map(|courses| largest(exact.iter().map(|&(row, output, value)| courses[output][row] - value)))
@@ -107,7 +108,7 @@ fn accelerations_and_reactions_are_of_second_order_too() {
 }
 
 /// A mass on a spring with ω = 1000/s.
-fn oscillator() -> Description {
+fn oscillator() -> Subject {
     read(
         "
 bodies: { mass: { mass: 1, coordinates: [x] } }
@@ -246,11 +247,11 @@ fn index_2_keeps_velocities_on_the_constraints_and_lets_positions_drift() {
 }
 
 /// The first output as the steps themselves carry it: rows of output solve for reactions of their own.
-fn reaction_of_steps(description: &Description, scheme: Scheme, h: f64) -> Vec<f64> {
+fn reaction_of_steps(description: &Subject, scheme: Scheme, h: f64) -> Vec<f64> {
     let simulator = compiled(description, scheme, h);
     let start = simulator.assemble(1, h, |_| nominal_sample(&simulator)).unwrap();
     let mut stepper = Stepper::new(&simulator.program, &start);
-    let schedule = Schedule::fixed(description.simulation.duration, h, h);
+    let schedule = Schedule::fixed(description.study().description().simulation.duration, h, h);
     let mut value = [0.0];
     let mut at_row = |row: usize| {
         schedule.steps_to(row).for_each(|(h, end)| assert_eq!(stepper.step(h, end), []));

@@ -1,6 +1,5 @@
 //! Redundant constraints and singular starts: parallelograms.
 
-use mbint::inner::study::{self, Options};
 use mbint::results::Method;
 
 use crate::common::runge_kutta::runge_kutta;
@@ -70,11 +69,10 @@ fn a_redundant_constraint_is_named_and_the_motion_is_that_of_one_crank() {
 #[test]
 fn a_flat_parallelogram_is_a_singular_start_and_runs() {
     let description = read(&parallelogram(2, 0.0, 1.0));
-    let simulator = study::prepare(&description).unwrap();
-    assert_eq!(simulator.mobility.degrees_of_freedom, 1);
-    assert!(simulator.mobility.redundant.is_empty() && !simulator.mobility.singular_at_start.is_empty());
-    let options = Options { threads: Some(2), ..Options::default() };
-    let (bounds, summary) = study::run(&description, options).unwrap();
+    let explained = description.study().explain().unwrap();
+    assert_eq!(explained.degrees_of_freedom, 1);
+    assert!(explained.redundant_constraints.is_empty() && !explained.singular_at_start.is_empty());
+    let (bounds, summary) = description.finished(None);
     assert_eq!(summary.failure, None);
     let end = *curve(&bounds, "angle").last().unwrap();
     let exact = one_crank(2.0, 0.0, 1.0);

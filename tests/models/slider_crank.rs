@@ -4,14 +4,12 @@
 //! The scheme's error is C h² with C = 1.8e3 m/s² over 2 s (largest, in x3), which is what the tolerances below are
 //! made of.
 
-use mbint::inner::methods::Taylor;
-use mbint::inner::model::Description;
-use mbint::inner::numerics::RangeKind;
+use mbint::RangeKind;
 use mbint::results::Method;
 
 use crate::common::measured::Case;
 use crate::common::{
-    Vary, band, curve, distance, largest, model, nominal, order, output, reference, richardson, row, run,
+    Subject, band, curve, distance, largest, model, nominal, order, output, reference, richardson, row, run,
 };
 
 /// How the reference was made, and where the mechanism is from.
@@ -28,7 +26,7 @@ fn true_ranges() -> Vec<Vec<f64>> {
 }
 
 /// The model without its bounds, with one uncertain parameter.
-fn slider_crank() -> Description {
+fn slider_crank() -> Subject {
     model("slider_crank_one").observing(&["slider.x", "crank.angle", "crank.angular_velocity"])
 }
 
@@ -42,7 +40,7 @@ fn nominal_errors(h: f64) -> [f64; 3] {
 }
 
 /// Largest distances of a method's lower and upper bounds of x3 from the true ones.
-fn bound_errors(description: &Description, method: Method) -> [f64; 2] {
+fn bound_errors(description: &Subject, method: Method) -> [f64; 2] {
     let bounds = run(description);
     let band = band(output(&bounds, "slider.x"), method);
     let truth = true_ranges();
@@ -105,10 +103,7 @@ fn errors_of_low_orders_are_those_of_the_polynomials() {
     println!("chebyshev 5: {lower:.3e}, {upper:.3e}");
     assert!(lower < 6.3e-4 && upper < 1.75e-3, "{lower}, {upper}");
     for (order, least, greatest) in [(2, 6.1e-2, 6.7e-2), (6, 0.8, 1.2)] {
-        let mut description = slider_crank().step(1e-4);
-        description.bounds = Default::default();
-        description.bounds.taylor = Some(Taylor { order, range: RangeKind::Tight });
-        let [lower, upper] = bound_errors(&description, Method::Taylor);
+        let [lower, upper] = bound_errors(&slider_crank().step(1e-4).taylor(order), Method::Taylor);
         println!("taylor {order}: {lower:.3e}, {upper:.3e}");
         let worst = lower.max(upper);
         assert!(worst < greatest && worst > least, "Taylor of order {order} is off by {worst}");
@@ -134,7 +129,7 @@ fn the_papers_interval_range_is_a_tenth_too_wide() {
 fn two_uncertain_parameters_are_bounded_tightly() {
     // Measured with exact solves: over 2 s Σ|c| is on average 1.24 times the true width, the polynomial's own range
     // 1.000.
-    let of = |description: Description, method| {
+    let of = |description: Subject, method| {
         let bounds = run(&description.observing(&["slider.x"]));
         let band = band(&bounds.outputs[0], method);
         band.upper.iter().zip(&band.lower).map(|(upper, lower)| upper - lower).collect::<Vec<f64>>()

@@ -4,9 +4,7 @@
 //! `cargo insta review` (or `INSTA_UPDATE=always cargo test --test models snapshots`) takes changes over. In CI a model
 //! without a snapshot fails.
 
-use mbint::inner::export::snapshot_table;
-
-use crate::common::{load_all, model_files, run_methods};
+use crate::common::{load_all, model_files};
 use crate::run_all::assert_complete;
 
 #[test]
@@ -19,14 +17,15 @@ fn bounds_are_those_of_the_snapshots() {
         let file = path.file_stem().unwrap().to_string_lossy().into_owned();
         for description in load_all(&path) {
             // A scene's is called `door.windy`.
-            let name = description.name.replace('/', ".");
+            let name = description.name().replace('/', ".");
             settings.set_description(format!(
                 "models/{file}.yaml{}",
-                description.name.replacen(&file, "", 1).replace('/', ", scene ")
+                description.name().replacen(&file, "", 1).replace('/', ", scene ")
             ));
-            let (bounds, summary) = run_methods(&description, None);
-            assert_complete(&description, &bounds, &summary);
-            settings.bind(|| insta::assert_snapshot!(name, snapshot_table(&bounds)));
+            let result = description.study().threads(2).run().unwrap_or_else(|error| panic!("{name}: {error}"));
+            assert_eq!(result.failure(), None, "{name}");
+            assert_complete(&description, result.bounds(), result.summary());
+            settings.bind(|| insta::assert_snapshot!(name, result.snapshot()));
         }
     }
 }
@@ -36,7 +35,7 @@ fn snapshots_belong_to_models() {
     let models: Vec<String> = model_files()
         .iter()
         .flat_map(|path| load_all(path))
-        .map(|description| description.name.replace('/', "."))
+        .map(|description| description.name().replace('/', "."))
         .collect();
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("snapshots");
     for entry in std::fs::read_dir(folder).unwrap() {

@@ -2,9 +2,9 @@
 
 use crate::common::measured::Case;
 use crate::common::{
-    Findings, Vary, curve, distance_from, largest, model, nominal, order, read, reference, richardson, row, run_methods,
+    Findings, Subject, curve, distance_from, largest, model, nominal, order, read, reference, richardson, row,
+    run_methods,
 };
-use mbint::inner::model::Description;
 use std::f64::consts::TAU;
 
 /// Positions are those of closed loops: Newton ends at 1e-11 of the model's size.
@@ -127,7 +127,7 @@ fn bricards_mechanism_falls_and_comes_back() {
 }
 
 /// The same text, read as a mechanism of the plane and as one of space.
-fn both(text: &str) -> [Description; 2] {
+fn both(text: &str) -> [Subject; 2] {
     ["planar", "spatial"].map(|space| read(&format!("space: {space}\n{text}")))
 }
 
@@ -163,7 +163,7 @@ outputs: { x: slider.x }
 simulation: { duration: 1, step: 1e-3, output_step: 0.01 }
 ",
     );
-    assert_eq!((pair[0].space.spatial, pair[1].space.spatial), (false, true));
+    assert_eq!(pair.each_ref().map(|own| own.study().description().space.spatial), [false, true]);
     let formulas = [
         "slider.x",
         "bob.x",

@@ -2,12 +2,11 @@
 
 use std::path::Path;
 
-use mbint::inner::model::{Analysis, Description};
 use mbint::results::{Method, OutputStatisticsSummary, Summary};
 
-use crate::common::{band, load, model_of, output, read, run_methods};
+use crate::common::{Subject, band, load, model_of, output, read, run_methods};
 
-fn example(name: &str) -> Description {
+fn example(name: &str) -> Subject {
     load(&Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("docs/examples/{name}.yaml")))
 }
 
@@ -22,7 +21,7 @@ fn statistics<'s>(summary: &'s Summary, name: &str) -> &'s OutputStatisticsSumma
 #[test]
 fn the_overrunning_clutch_has_its_published_digits() {
     let model = example("overrunning_clutch");
-    assert_eq!(model.analysis, Analysis::Dimensions);
+    assert_eq!(model.study().description().analysis.name(), "dimensions");
     let (bounds, summary) = run_methods(&model, None);
     let found = statistics(&summary, "phi");
     let worst = band(output(&bounds, "phi"), Method::Chebyshev);
@@ -115,7 +114,7 @@ fn a_histogram_has_the_moments_of_the_sum() {
 #[test]
 fn a_chain_goes_through_a_mechanism() {
     let model = example("ejector");
-    assert_eq!(model.analysis, Analysis::Kinematics);
+    assert_eq!(model.study().description().analysis.name(), "kinematics");
     let (bounds, summary) = run_methods(&model, None);
     let gap = output(&bounds, "gap");
     let travel = |r: f64, l: f64, time: f64| {

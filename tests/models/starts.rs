@@ -2,7 +2,7 @@
 //! velocities; and values that depend on t where they are prescribed. All against trigonometry or another method.
 
 use crate::common::dormand_prince::dormand_prince;
-use crate::common::{Vary, curve, distance, distance_from, largest, nominal, order, ran, read, refused, study_of};
+use crate::common::{curve, distance, distance_from, largest, nominal, order, ran, read, refused, study_of};
 
 /// Two bars that hang from the ground, 0.7 m and 0.5 m long, described by `formulation`, with this start.
 fn two_bars(formulation: &str, initial: &str) -> String {

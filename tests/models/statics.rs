@@ -4,10 +4,10 @@ use std::path::Path;
 
 use mbint::results::{Bounds, Method, Verdict};
 
-use crate::common::{load, nominal, ran, read, refused, run, study_of};
+use crate::common::{Subject, load, nominal, ran, read, refused, run, study_of};
 
 /// A model of the guide.
-pub fn example(name: &str) -> mbint::inner::model::Description {
+pub fn example(name: &str) -> Subject {
     load(&Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/examples").join(name))
 }
 

@@ -1,13 +1,10 @@
 //! Statistics beside the bounds, against closed forms (linear, quadratic, product of normals) and against direct Monte
 //! Carlo of the simulation.
 
-use mbint::inner::model::{self, Description, Override, ParameterValue};
-use mbint::inner::study::{self, Options};
 use mbint::results::{OutputStatistics, Summary, Uncertain};
-use symdiff::Formula;
 
 use crate::common::random::Random;
-use crate::common::{nominal, output, read, run};
+use crate::common::{Subject, output, read, run};
 
 /// A body at rest at a place that a formula gives.
 fn at_rest_text(parameters: &str, place: &str, more: &str) -> String {
@@ -25,15 +22,15 @@ bounds: {{ chebyshev: {{ order: 3 }} }}
     )
 }
 
-fn at_rest(parameters: &str, place: &str, more: &str) -> Description {
+fn at_rest(parameters: &str, place: &str, more: &str) -> Subject {
     read(&at_rest_text(parameters, place, more))
 }
 
-fn summary(description: &Description, threads: usize) -> Summary {
-    study::run(description, Options { threads: Some(threads), ..Options::default() }).unwrap().1
+fn summary(description: &Subject, threads: usize) -> Summary {
+    description.study().threads(threads).run().unwrap().summary().clone()
 }
 
-fn statistics(description: &Description) -> OutputStatistics {
+fn statistics(description: &Subject) -> OutputStatistics {
     let found = summary(description, 2).statistics.expect("statistics were asked");
     assert_eq!(found.summary.failure, None);
     found.outputs[0].clone()
@@ -170,24 +167,20 @@ fn direct_monte_carlo_of_the_simulation_agrees() {
     // Laws by another way: sums and orders of numbers of a linear congruential generator.
     let mut random = Random(12_345);
     let mut uniform = || random.uniform();
-    let mut values = vec![Vec::new(); 2];
+    let mut points = Vec::new();
     for _ in 0..COUNT {
         // Beta(2, 3) is the second smallest of four.
         let mut four = [uniform(), uniform(), uniform(), uniform()];
         four.sort_by(f64::total_cmp);
-        let sample = [
+        points.push(vec![
             0.12 * (0.98 + 0.04 * four[1]),
             0.5 * (0.99 + 0.02 * uniform()),
             0.5 * (0.95 + 0.05 * (uniform() + uniform())),
-        ];
-        let mut one = description.clone();
-        one.statistics = Default::default();
-        one.bounds = Default::default();
-        let uncertain = one.parameters.iter_mut().filter(|p| matches!(p.value, ParameterValue::Interval { .. }));
-        uncertain.zip(sample).for_each(|(p, value)| p.value = ParameterValue::Formula(Formula::number(value)));
-        let bounds = nominal(&one);
-        values.iter_mut().zip(&bounds.outputs).for_each(|(values, output)| values.push(output.nominal[3]));
+        ]);
     }
+    let samples = description.study().sample(&points).unwrap();
+    let last = |name: &str| -> Vec<f64> { (0..COUNT).map(|point| samples.course(point, name).unwrap()[3]).collect() };
+    let values = ["x", "force"].map(last);
     for (values, found) in values.iter().zip(&found.outputs) {
         let n = COUNT as f64;
         let mean = values.iter().sum::<f64>() / n;
@@ -205,7 +198,8 @@ fn direct_monte_carlo_of_the_simulation_agrees() {
 #[test]
 fn statistics_lie_inside_the_bounds_and_are_the_same_bits_for_any_number_of_threads() {
     let description = read(CRANK);
-    let (bounds, first) = study::run(&description, Options { threads: Some(1), ..Options::default() }).unwrap();
+    let result = description.study().threads(1).run().unwrap();
+    let (bounds, first) = (result.bounds(), result.summary().clone());
     assert_eq!(first.statistics, summary(&description, 2).statistics);
     for (output, found) in bounds.outputs.iter().zip(&first.statistics.unwrap().outputs) {
         let band = &output.bands[0];
@@ -222,8 +216,12 @@ fn statistics_lie_inside_the_bounds_and_are_the_same_bits_for_any_number_of_thre
 #[test]
 fn who_asks_for_none_gets_the_same_bounds_and_no_statistics() {
     let asked = read(CRANK);
-    let mut plain = asked.clone();
-    plain.statistics = Default::default();
+    let laws = [
+        ", distribution: { beta: { alpha: 2, beta: 3 } }",
+        ", distribution: triangular",
+        "statistics: { samples: 65536 }",
+    ];
+    let plain = read(&laws.iter().fold(CRANK.to_owned(), |text, law| text.replace(law, "")));
     let (with, without) = (run(&asked), run(&plain));
     assert_eq!(with, without);
     assert_eq!(summary(&plain, 2).statistics, None);
@@ -235,7 +233,6 @@ fn a_dependent_tolerance_lies_around_the_value() {
   s: { value: 40 mm, tolerance: 1 mm }
   s2: { value: s, tolerance: 0.01 mm }";
     let width = |place: &str, set: &[&str]| {
-        let set: Vec<Override> = set.iter().map(|text| Override::parse(text).unwrap()).collect();
         let text = format!(
             "parameters: {two}
 bodies: {{ block: {{ mass: 1, coordinates: [x] }} }}
@@ -243,7 +240,10 @@ initial: {{ block.x: {place}, block.vx: 0 }}
 outputs: {{ x: block.x }}
 simulation: {{ duration: 0.02, step: 0.01 }}"
         );
-        let description = model::load_str("test", &text, &set).unwrap_or_else(|wrong| panic!("{wrong}"));
+        let description = set.iter().fold(read(&text), |found, setting| {
+            let (name, value) = setting.split_once('=').unwrap();
+            found.with(name, value)
+        });
         let band = output(&run(&description), "x").bands[0].clone();
         band.upper[0] - band.lower[0]
     };

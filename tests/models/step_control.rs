@@ -4,7 +4,7 @@
 //! h ∼ tol^(1/2), and the error at the end, ∼ h², is proportional to the tolerance:
 //! a decade for a decade, within a factor of 3.
 
-use crate::common::{Vary, distance, model, nominal, run_methods};
+use crate::common::{distance, model, nominal, run_methods};
 
 #[test]
 fn the_error_falls_with_the_tolerance() {

@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 use mbint::Model;
 use mbint::results::{Bounds, Method};
 
-use crate::common::{Vary, band, curve, largest, nominal, output, read, run, run_methods};
+use crate::common::{band, curve, largest, nominal, output, read, run, run_methods};
 
 /// A ball that falls on a stiff ground.
 const BALL: &str = "

@@ -7,7 +7,7 @@ use mbint::results::{Bounds, Criterion, Method, Summary};
 
 use crate::common::dormand_prince::dormand_prince;
 use crate::common::random::Random;
-use crate::common::{Vary, band, largest, output, read, run_methods, study_of};
+use crate::common::{band, largest, output, read, run_methods, study_of};
 
 /// A ball that bounces without loss.
 const ELASTIC: &str = "

@@ -1,20 +1,14 @@
 //! Bounds to a tolerance, of few and of many parameters, against truths of other methods.
 
-use mbint::inner::methods::{BoundsRequest, Budget, Chebyshev, Scan};
-use mbint::inner::model::{Description, ParameterValue};
 use mbint::results::{Bounds, Method};
 
 use crate::common::runge_kutta::runge_kutta;
-use crate::common::{Vary, band, load, model, model_files, read, reference, run, run_methods};
+use crate::common::{
+    Subject, band, load, model, model_files, read, reference, run, run_methods, with_reversed_parameters,
+};
 
-fn within(mut description: Description, tolerance: f64, simulations: usize) -> Description {
-    description.bounds = BoundsRequest {
-        tolerance: Some(tolerance),
-        budget: Budget { simulations, ..Budget::default() },
-        chebyshev: Some(Chebyshev::ADAPTIVE),
-        ..Default::default()
-    };
-    description
+fn within(description: Subject, tolerance: f64, simulations: usize) -> Subject {
+    description.asking(move |study| study.tolerance(tolerance).budget(simulations))
 }
 
 fn unresolved(bounds: &Bounds) -> usize {
@@ -52,8 +46,7 @@ fn the_tolerance_is_met() {
 /// simulations where each surrogate is held against new samples.
 #[test]
 fn what_turns_takes_few_simulations() {
-    let mut description = within(model("slider_crank").observing(&["slider.x"]), 1e-5, 400);
-    description.bounds.scan = Some(Scan { points: vec![13; 2] });
+    let description = within(model("slider_crank").observing(&["slider.x"]), 1e-5, 400).scan(13);
     let (bounds, summary) = run_methods(&description, None);
     let chebyshev = summary.methods.iter().find(|method| method.method == "chebyshev").unwrap();
     println!("{chebyshev:?}");
@@ -186,15 +179,12 @@ fn slider_crank([l1, l2, m1, m2, m3, c, k, tau]: [f64; 8], output_step: f64, row
 const NOMINAL: [f64; 8] = [0.15, 0.56, 0.37, 0.77, 0.45, 1.0, 5.0, -0.5];
 
 /// All eight parameters known to 1 %.
-fn eight() -> Description {
-    let mut description = model("slider_crank").observing(&["slider.x"]);
-    for parameter in &mut description.parameters {
-        let place = ["l1", "l2", "m1", "m2", "m3", "c", "k", "tau"].iter().position(|name| *name == parameter.name);
-        let nominal = NOMINAL[place.unwrap()];
-        let half = 0.01 * nominal.abs();
-        parameter.value = ParameterValue::Interval { nominal, lower: nominal - half, upper: nominal + half };
-    }
-    description
+fn eight() -> Subject {
+    let names = ["l1", "l2", "m1", "m2", "m3", "c", "k", "tau"];
+    // Its scan is not one of eight parameters.
+    let text = include_str!("../../models/slider_crank.yaml").split_once("bounds:").unwrap().0;
+    let crank = read(text).observing(&["slider.x"]);
+    names.iter().zip(NOMINAL).fold(crank, |found, (name, nominal)| found.with(name, format!("{nominal} ± 1%")))
 }
 
 /// The largest x3 (times `sign`) at a row over the box of ± 1 %: climbing from many starts, parameter by parameter.
@@ -275,7 +265,7 @@ fn eight_parameters_take_five_hundred_simulations() {
 /// is a ridge, along which the position rises with both lengths alone.
 #[test]
 fn an_end_is_followed_along_a_ridge_to_the_longest_links() {
-    let bounds = run(&within(eight(), 1e-3, Budget::default().simulations));
+    let bounds = run(&eight().asking(|study| study.tolerance(1e-3)));
     let band = &bounds.outputs[0].bands[0];
     let (longest, row) = (1.01 * (NOMINAL[0] + NOMINAL[1]), 157);
     assert!((band.upper[row] - longest).abs() < band.error.total[row], "{} of {longest}", band.upper[row]);
@@ -287,8 +277,8 @@ fn an_end_is_followed_along_a_ridge_to_the_longest_links() {
 #[ignore = "10 s: four parameters in other orders"]
 fn permuted_parameters_have_the_same_bounds() {
     let description = within(model("slider_crank"), 1e-3, 1000);
-    let mut permuted = description.clone();
-    permuted.parameters.reverse();
+    let permuted = with_reversed_parameters(include_str!("../../models/slider_crank.yaml"));
+    let permuted = within(permuted, 1e-3, 1000);
     let (one, other) = (run(&description), run(&permuted));
     let (a, b) = (band(&one.outputs[0], Method::Chebyshev), band(&other.outputs[0], Method::Chebyshev));
     for row in 0..a.lower.len() {
@@ -330,14 +320,7 @@ bounds: { chebyshev: { order: 3 } }
 /// Where nothing is uncertain there is nothing to expand, but steps to choose.
 #[test]
 fn nothing_uncertain_has_a_tolerance_too() {
-    let mut description = model("slider_crank_one");
-    for parameter in &mut description.parameters {
-        if let ParameterValue::Interval { nominal, .. } = parameter.value {
-            let formula = symdiff::Formula::parse(&nominal.to_string()).unwrap();
-            parameter.value = ParameterValue::Formula(formula);
-        }
-    }
-    let bounds = run(&within(description, 1e-3, 100));
+    let bounds = run(&within(model("slider_crank_one").with("l1", 0.15), 1e-3, 100));
     let band = band(&bounds.outputs[0], Method::Chebyshev);
     assert_eq!((&band.lower, &band.upper), (&bounds.outputs[0].nominal, &bounds.outputs[0].nominal));
     assert_eq!(unresolved(&bounds), 0);

@@ -2,13 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use mbint::inner::model::{self, Description, EffectKind, Reading};
-use mbint::inner::study::{self, Options};
+use mbint::Model;
 use symdiff::{Builder, Formula};
 
 use crate::common::measured::Case;
 use crate::common::{
-    Findings, Vary, curve, distance, distance_from, largest, load, nominal, order, reference, row, rows, run,
+    Findings, Subject, curve, distance, distance_from, largest, load, nominal, order, reference, row, rows, run,
     third_party,
 };
 
@@ -26,21 +25,15 @@ impl Files {
         self.0.path().join(file)
     }
 
-    fn alone(&self) -> Description {
+    fn alone(&self) -> Subject {
         load(&self.path("robot.urdf"))
     }
 
-    fn with(&self, yaml: &str) -> Reading {
+    fn model(&self, yaml: &str) -> Subject {
         let simulation = "\nsimulation: { duration: 0.5, step: 1e-3, output_step: 0.01 }\n";
         let path = self.path("model.yaml");
         std::fs::write(&path, format!("urdf: robot.urdf\n{yaml}{simulation}")).unwrap();
-        model::read(&path, &[])
-    }
-
-    #[track_caller]
-    fn model(&self, yaml: &str) -> Description {
-        let reading = self.with(yaml);
-        reading.description.unwrap_or_else(|| panic!("{}", reading.diagnostics))
+        load(&path)
     }
 }
 
@@ -77,9 +70,8 @@ fn errors_of_swinging(urdf: &Path, starts: &[&str], rows: &[Vec<f64>]) -> [f64; 
         );
         // A model names files of its own folder.
         let name = urdf.with_file_name("swinging.yaml");
-        let description =
-            model::load_str(name.to_str().unwrap(), &text, &[]).unwrap_or_else(|report| panic!("{report}"));
-        let bounds = nominal(&description);
+        let model = Model::from_yaml_str(name.to_str().unwrap(), &text).unwrap_or_else(|report| panic!("{report}"));
+        let bounds = nominal(&model.into());
         largest(starts.iter().enumerate().map(|(i, start)| {
             let exact: Vec<f64> = rows.iter().map(|row| row[i + 1]).collect();
             distance(curve(&bounds, start.split('.').next().unwrap()), &exact)
@@ -137,7 +129,8 @@ fn welded(second: &str) -> Files {
 #[test]
 fn welded_links_are_one_body() {
     let files = welded(&link("b", 3.0, "0.2 0 0", [0.05, 0.04, 0.03]));
-    let description = files.alone();
+    let study = files.alone().study();
+    let description = study.description();
     assert_eq!(description.bodies.len(), 2, "ground and a");
     let body = &description.bodies[1];
     // b's centre is at (0.1, 0, −1) + R_z(90°) (0.2, 0, 0) = (0.1, 0.2, −1) of a; its x and y change places.
@@ -334,14 +327,13 @@ fn a_mimic_follows() {
 fn friction_is_there_only_where_the_file_has_it() {
     let parts = |details: &str| [joint("hinge", "revolute", "base", "a", details), link("a", 1.0, "0 0 0", [0.1; 3])];
     let frictionless = robot(&parts("")).model("");
-    assert!(frictionless.effects.is_empty());
-    let description = robot(&parts("<dynamics friction='0.5'/>")).model("initial: { hinge.angular_velocity: 4 }");
-    let names: Vec<(&str, bool)> = description
-        .effects
-        .iter()
-        .map(|effect| (effect.name.as_str(), matches!(effect.kind, EffectKind::JointFriction(_))))
-        .collect();
-    assert_eq!(names, [("hinge.friction", true)]);
+    assert!(frictionless.study().description().effects.is_empty());
+    let files = robot(&parts("<dynamics friction='0.5'/>"));
+    let description = files.model("initial: { hinge.angular_velocity: 4 }");
+    let study = description.study();
+    let effects = study.description().effects.iter();
+    let names: Vec<(&str, &str)> = effects.map(|own| (own.name.as_str(), own.kind.keyword())).collect();
+    assert_eq!(names, [("hinge.friction", "joint_friction")]);
     // ω̇ = −(f/J) ω/s, s = √(ω² + v₀²): s − v₀ log((v₀ + s)/ω) falls by f/J a second. What is left is the scheme's own
     // error of a spin, of second order.
     let of_speed = |omega: f64| {
@@ -378,11 +370,11 @@ fn a_link_without_mass_at_the_end_is_left_out() {
         joint("end", "revolute", "a", "tip", ""),
         "<link name='tip'/>".to_owned(),
     ]);
-    let reading = files.with(GRAVITY);
-    let records = reading.diagnostics.records();
+    let description = files.model(GRAVITY);
+    let records = description.model.warnings().records();
     assert_eq!(records.len(), 1);
     assert_eq!(records[0].message, "link `tip` moves, but has no mass: it is left out, with its joint `end`");
-    assert_eq!(nominal(&reading.description.unwrap()).outputs.len(), 1);
+    assert_eq!(nominal(&description).outputs.len(), 1);
 }
 
 /// What urdf-rs reads of the same text, as another reader of the format.
@@ -390,8 +382,8 @@ fn a_link_without_mass_at_the_end_is_left_out() {
 fn numbers_are_those_of_urdf_rs() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("models/arm.urdf");
     let other = urdf_rs::read_file(&path).unwrap();
-    let ours = load(&path);
-    let tree = ours.robot.as_ref().unwrap();
+    let ours = load(&path).study();
+    let tree = ours.description().robot.as_ref().unwrap();
     assert_eq!(tree.links.len(), other.links.len());
     for link in &other.links {
         let found = tree.links.iter().find(|known| known.name == link.name).unwrap();
@@ -425,19 +417,14 @@ fn robots_of_a_collection_run() {
             } else if path.extension().is_some_and(|extension| extension == "urdf") {
                 count += 1;
                 let name = path.display();
-                match model::load(&path, &[]) {
+                match Model::from_file(&path) {
                     Err(report) => findings.check(false, format_args!("{name}: {report}")),
-                    Ok(description) => {
-                        let description = description.duration(0.1);
-                        let options = Options { methods: Some(Vec::new()), threads: Some(2), ..Options::default() };
-                        match study::run(&description, options) {
-                            Err(error) => findings.check(false, format_args!("{name}: {error}")),
-                            Ok((_, summary)) => {
-                                findings
-                                    .check(summary.failure.is_none(), format_args!("{name}: {:?}", summary.failure));
-                            }
+                    Ok(model) => match Subject::from(model).duration(0.1).study().methods(&[]).threads(2).run() {
+                        Err(error) => findings.check(false, format_args!("{name}: {error}")),
+                        Ok(result) => {
+                            findings.check(result.failure().is_none(), format_args!("{name}: {:?}", result.failure()));
                         }
-                    }
+                    },
                 }
             }
         }

@@ -7,12 +7,12 @@
 
 use std::path::Path;
 
-use mbint::inner::model::{Description, load_str};
+use mbint::Model;
 use mbint::results::{Bounds, Method};
 use nalgebra::{DMatrix, DVector};
 
 use crate::common::measured::Case;
-use crate::common::{band, curve, nominal, output, run};
+use crate::common::{Subject, band, curve, nominal, output, run};
 
 /// Digits of a reading, as a standard uncertainty of a uniform distribution over one of them.
 fn of_digits(step: f64) -> f64 {
@@ -20,14 +20,14 @@ fn of_digits(step: f64) -> f64 {
 }
 
 /// A model of `tests/validation` with other texts in some places.
-fn model(file: &str, replaced: &[(&str, String)]) -> Description {
+fn model(file: &str, replaced: &[(&str, String)]) -> Subject {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/validation").join(file);
     let mut text = std::fs::read_to_string(path).unwrap();
     for (old, new) in replaced {
         assert_eq!(text.matches(old).count(), 1, "{file}: {old}");
         text = text.replace(old, new);
     }
-    load_str(file, &text, &[]).unwrap()
+    Model::from_yaml_str(file, &text).unwrap().into()
 }
 
 /// Nominal value, and half the width of the band.

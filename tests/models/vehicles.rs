@@ -1,7 +1,7 @@
 //! Vehicles of `models/` against another method: their equations by hand, by Dormand and Prince's pair.
 
 use crate::common::dormand_prince::dormand_prince;
-use crate::common::{Vary, curve, distance, model, nominal, order};
+use crate::common::{curve, distance, model, nominal, order};
 
 const G: f64 = 9.81;
 

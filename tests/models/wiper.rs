@@ -4,7 +4,7 @@
 use std::f64::consts::TAU;
 
 use super::drawing_linkages::{Point, left_of};
-use crate::common::{Vary, curve, distance_from, model, nominal, order};
+use crate::common::{curve, distance_from, model, nominal, order};
 
 const SPEED: f64 = 0.75 * TAU;
 const SHAFTS: [Point; 2] = [[0.2, 0.0], [0.65, 0.0]];

@@ -3,8 +3,8 @@
 use std::fs;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use mbint::inner::model::load_str;
-use mbint::inner::study::{self, AllocateOptions, Options};
+use mbint::Model;
+use mbint::results::Criterion;
 
 use crate::place::Place;
 
@@ -277,15 +277,15 @@ fn an_interruption_keeps_what_is_confirmed() {
     let place = Place::new();
     let law = |cost: u32| format!("cost: {{ reciprocal: {cost} }}, distribution: normal");
     stack(&place, [&law(1), &law(4), &law(2)]);
-    let model = load_str("stack.yaml", &fs::read_to_string(place.path().join("stack.yaml")).unwrap(), &[]).unwrap();
-    let asked = AllocateOptions { share: Some(0.99999), widest: 2.0 };
+    let model = Model::from_file(place.path().join("stack.yaml")).unwrap();
     let until = |confirmed: usize| {
         let studies = AtomicUsize::new(0);
         let stage = |stage: &str| {
             studies.fetch_add(usize::from(stage == "confirming"), Ordering::Relaxed);
         };
         let interrupted = || studies.load(Ordering::Relaxed) > confirmed;
-        study::allocate(&model, asked, &Options { stage: &stage, interrupted: &interrupted, ..Options::default() })
+        let study = model.study().allow_costly().stage(&stage).interrupted(&interrupted);
+        study.allocate(Criterion::Share(0.99999), 2.0)
     };
     assert!(until(0).unwrap_err().to_string().contains("interrupted"));
     let kept = until(2).unwrap();

@@ -8,12 +8,12 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::LazyLock;
 
-use mbint::inner::{
-    model::{self, EffectKind, Override},
-    syntax::Diagnostics,
-};
+use mbint::{Diagnostics, Error, Model};
 use proptest::prelude::*;
+
+use crate::place::{Place, told};
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -37,14 +37,17 @@ fn commented(path: &Path, lines: Vec<String>) -> Vec<String> {
 }
 
 /// `` `gravity`, … and `belt` ``.
-fn all_effects() -> String {
-    let quoted: Vec<String> = EffectKind::KEYWORDS.iter().map(|keyword| format!("`{keyword}`")).collect();
+fn list_effects() -> String {
+    let (printed, _) = Place::new().run("explain --effects --format json", 0);
+    let effects: Vec<serde_json::Value> = serde_json::from_str(&printed).unwrap();
+    let quoted: Vec<String> =
+        effects.iter().map(|effect| format!("`{}`", effect["keyword"].as_str().unwrap())).collect();
     let (last, others) = quoted.split_last().unwrap();
     format!("{} and {last}", others.join(", "))
 }
 
 fn found(diagnostics: &Diagnostics) -> Vec<String> {
-    let effects = all_effects();
+    static EFFECTS: LazyLock<String> = LazyLock::new(list_effects);
     let mut lines = Vec::new();
     for record in diagnostics.records() {
         let severity = format!("{:?}", record.severity).to_lowercase();
@@ -53,7 +56,7 @@ fn found(diagnostics: &Diagnostics) -> Vec<String> {
             _ => String::new(),
         };
         lines.push(format!("# {severity}[{}]: {place}{}", record.code, record.message));
-        lines.extend(record.help.map(|help| format!("# help: {}", help.replace(&effects, "{effects}"))));
+        lines.extend(record.help.map(|help| format!("# help: {}", help.replace(EFFECTS.as_str(), "{effects}"))));
     }
     lines
 }
@@ -79,7 +82,7 @@ fn bad_models_are_reported_in_their_places() {
     for path in paths {
         let text = fs::read_to_string(&path).unwrap();
         let expected: Vec<&str> = text.lines().take_while(|line| is_expectation(line)).collect();
-        let got = commented(&path, found(&model::read(&path, &[]).diagnostics));
+        let got = commented(&path, found(&told(Model::from_file(&path))));
         if got == expected {
             assert!(!expected.is_empty(), "{} is not bad", path.display());
             continue;
@@ -89,7 +92,7 @@ fn bad_models_are_reported_in_their_places() {
             let with = |lines: &[String]| format!("{}\n{body}", lines.join("\n"));
             // The places move down by the lines that are written: once more gives them as they then are.
             fs::write(&path, with(&got)).unwrap();
-            let moved = commented(&path, found(&model::read(&path, &[]).diagnostics));
+            let moved = commented(&path, found(&told(Model::from_file(&path))));
             fs::write(&path, with(&moved)).unwrap();
         }
         failures +=
@@ -101,7 +104,7 @@ fn bad_models_are_reported_in_their_places() {
 #[test]
 fn every_bad_model_renders() {
     for path in bad_models() {
-        let diagnostics = model::read(&path, &[]).diagnostics;
+        let diagnostics = told(Model::from_file(&path));
         for colour in [true, false] {
             let text = diagnostics.render(colour);
             assert!(!text.is_empty());
@@ -113,7 +116,7 @@ fn every_bad_model_renders() {
 #[test]
 fn an_error_looks_like_rustc() {
     let text = slider_crank().replace("[crank.B, rod.B]", "[crnk.B, rod.B]");
-    let diagnostics = model::load_str("models/x.yaml", &text, &[]).unwrap_err();
+    let diagnostics = wrong("models/x.yaml", &text);
     let expected = "\
 error[E0401]: unknown body `crnk`
   --> models/x.yaml:19:23
@@ -129,7 +132,7 @@ error[E0401]: unknown body `crnk`
 #[test]
 fn both_places_of_a_duplicate_are_shown() {
     let text = "parameters:\n  a: 1\n  a: 2\n";
-    let rendered = model::load_str("x.yaml", text, &[]).unwrap_err().render(false);
+    let rendered = wrong("x.yaml", text).render(false);
     assert!(rendered.contains("first here") && rendered.contains("again here"), "{rendered}");
 }
 
@@ -137,15 +140,27 @@ fn both_places_of_a_duplicate_are_shown() {
 fn very_long_lines_are_cut() {
     let filler = "x".repeat(1_000_000);
     let text = format!("outputs: {{ {filler}: 1, b: [2], y: {filler} }}");
-    let diagnostics = model::load_str("x.yaml", &text, &[]).unwrap_err();
+    let diagnostics = wrong("x.yaml", &text);
     let rendered = diagnostics.render(false);
     assert!(rendered.len() < 20_000, "{} bytes", rendered.len());
     let place = diagnostics.records().into_iter().find(|record| record.column.is_some_and(|column| column > 1_000_000));
     assert!(rendered.contains(&format!("x.yaml:1:{}", place.unwrap().column.unwrap())), "{rendered}");
 }
 
+/// What is wrong with a text.
+#[track_caller]
+fn wrong(name: &str, text: &str) -> Diagnostics {
+    wrong_of(Model::from_yaml_str(name, text))
+}
+
+#[track_caller]
+fn wrong_of(model: Result<Model, Error>) -> Diagnostics {
+    let Err(Error::Model(diagnostics)) = model else { panic!("it has no errors") };
+    diagnostics
+}
+
 fn error_of(path: &Path) -> String {
-    let diagnostics = model::load(path, &[]).unwrap_err();
+    let diagnostics = wrong_of(Model::from_file(path));
     let rendered = diagnostics.render(false);
     assert!(rendered.contains(&path.display().to_string()), "{rendered}");
     let record = diagnostics.records().remove(0);
@@ -174,7 +189,7 @@ fn files_that_are_no_models_are_refused() {
     for (this, last) in ('b'..='i').zip('a'..) {
         bomb += &format!("{this}: &{this} [{}]\n", vec![format!("*{last}"); 9].join(","));
     }
-    let records = model::load_str("bomb.yaml", &bomb, &[]).unwrap_err().records();
+    let records = wrong("bomb.yaml", &bomb).records();
     for message in ["anchors are not supported", "aliases are not supported"] {
         assert!(records.iter().any(|record| record.message == message));
     }
@@ -194,7 +209,7 @@ fn all_errors_of_a_large_file_are_counted() {
         let value = if index == 0 { "1".to_owned() } else { format!("p{} + q{index}", index - 1) };
         text += &format!("  p{index}: {value}\n");
     }
-    let diagnostics = model::load_str("x.yaml", &text, &[]).unwrap_err();
+    let diagnostics = wrong("x.yaml", &text);
     assert_eq!(diagnostics.errors(), 19_999);
     assert!(diagnostics.render(false).ends_with("… and 19949 more\n"));
 }
@@ -206,13 +221,13 @@ fn a_message_that_comes_often_is_shown_once() {
     for index in 1..=24 {
         text += &format!("  b{index}: {{ mass: 1, density: 7800, coordinates: [x] }}\n");
     }
-    let diagnostics = model::load_str("x.yaml", &text, &[]).unwrap_err();
+    let diagnostics = wrong("x.yaml", &text);
     assert_eq!(diagnostics.records().len(), 24);
     let rendered = diagnostics.render(false);
     assert_eq!(rendered.matches("error[").count(), 1, "{rendered}");
     assert!(rendered.contains("the same in 23 more places: line 5, 6, 7, 8, 9, 10, 11, 12, …"), "{rendered}");
     let two = text.lines().take(5).collect::<Vec<_>>().join("\n");
-    let rendered = model::load_str("x.yaml", &two, &[]).unwrap_err().render(false);
+    let rendered = wrong("x.yaml", &two).render(false);
     assert_eq!(rendered.matches("error[").count(), 2, "{rendered}");
 }
 
@@ -222,7 +237,7 @@ fn a_slip_of_several_bodies_is_shown_once() {
     let text = "bodies:\n  rod: { mass: 1, inertia: 1 }\n  disc: { mass: 1, inertia: 1 }\n  cam: { mass: 1, inertia: 1 }\n\
                 initial: { rod.angel: 0, disc.angel: 0 }\noutputs: { x: cam.angel, y: cam.width }\n\
                 simulation: { duration: 1, step: 1e-3 }\n";
-    let diagnostics = model::load_str("x.yaml", text, &[]).unwrap_err();
+    let diagnostics = wrong("x.yaml", text);
     assert_eq!(diagnostics.records().len(), 4);
     let rendered = diagnostics.render(false);
     assert_eq!(rendered.matches("error[").count(), 2, "{rendered}");
@@ -231,13 +246,16 @@ fn a_slip_of_several_bodies_is_shown_once() {
 
 #[test]
 fn overrides_are_reported_where_they_stand() {
-    let load = |text: &str| {
-        let wanted = Override::parse(text)?;
-        model::load_str("models/slider_crank.yaml", &slider_crank(), &[wanted])
+    // Without a value there is nothing that Rust could set.
+    let model = root().join("models/slider_crank.yaml");
+    let (_, errors) = Place::new().run(&format!("check {} --set l1", model.display()), 2);
+    assert!(errors.contains("a parameter is set with `=`"), "{errors}");
+    let set = |text: &str| {
+        let (name, value) = text.split_once('=').unwrap();
+        Model::from_yaml_str("models/slider_crank.yaml", &slider_crank()).unwrap().with(name, value)
     };
     for (text, message, place, help) in [
         ("l3=1", "unknown parameter `l3`", Some((1, 1)), Some("did you mean `l1`?")),
-        ("l1", "a parameter is set with `=`", Some((1, 1)), None),
         ("l1=", "the value is missing", Some((1, 1)), None),
         ("l1=[1,2", "the interval's `]` is missing", Some((1, 4)), None),
         ("l1=[1]", "an interval has two ends", Some((1, 4)), None),
@@ -248,7 +266,7 @@ fn overrides_are_reported_where_they_stand() {
         ("l1=1 ± 1% ± 2%", "a tolerance has one `±`", Some((1, 4)), None),
         ("l1=1 + foo", "unknown parameter `foo`", Some((1, 8)), None),
     ] {
-        let diagnostics = load(text).unwrap_err();
+        let diagnostics = wrong_of(set(text));
         let record = diagnostics.records().into_iter().find(|record| record.file == "--set").unwrap();
         assert_eq!(record.message, message, "{text}");
         assert_eq!(record.line.zip(record.column), place, "{text}");
@@ -266,10 +284,12 @@ fn sound(which: usize) -> String {
 }
 
 fn never_panics(text: &str) {
-    let reading = model::read_str("x.yaml", text, &[]);
-    let rendered = reading.diagnostics.render(false);
-    assert_eq!(reading.description.is_none(), reading.diagnostics.has_errors());
-    assert_eq!(rendered.is_empty(), reading.diagnostics.is_empty());
+    let model = Model::from_yaml_str("x.yaml", text);
+    let has_errors = model.is_err();
+    let diagnostics = told(model);
+    let rendered = diagnostics.render(false);
+    assert_eq!(has_errors, diagnostics.has_errors());
+    assert_eq!(rendered.is_empty(), diagnostics.is_empty());
 }
 
 proptest! {
@@ -333,9 +353,7 @@ proptest! {
 
     #[test]
     fn random_overrides_do_not_panic(text in "l1=?[-+±%0-9a-z. \\[\\],=*/^()]{0,20}") {
-        if let Ok(wanted) = Override::parse(&text) {
-            let reading = model::read_str("x.yaml", &slider_crank(), &[wanted]);
-            reading.diagnostics.render(false);
-        }
+        let (name, value) = text.split_once('=').unwrap_or((&text, ""));
+        told(Model::from_yaml_str("x.yaml", &slider_crank()).unwrap().with(name, value)).render(false);
     }
 }

@@ -4,8 +4,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use mbint::inner::study::{self, Options};
-use mbint::inner::{model, model::Description};
+use mbint::{Error, Model};
 
 use crate::place::Place;
 
@@ -24,9 +23,8 @@ fn files(folder: &str) -> Vec<PathBuf> {
 }
 
 /// Goes up to the first step and no further.
-fn begins(description: &Description) -> Result<(), String> {
-    let options = Options { interrupted: &|| true, costly: false, ..Options::default() };
-    study::run(description, options).map(drop).map_err(|error| error.to_string())
+fn begins(model: &Model) -> Result<(), Error> {
+    model.study().interrupted(&|| true).run().map(drop)
 }
 
 #[test]
@@ -54,8 +52,8 @@ fn both_refuse_the_same_models_with_the_same_words() {
 fn both_accept_the_same_models() {
     for path in files("models").into_iter().chain(files("docs/examples")) {
         let shown = path.display();
-        let description = model::load(&path, &[]).unwrap_or_else(|diagnostics| panic!("{diagnostics}"));
-        let (ready, begun) = (study::ready(&description).map(drop), begins(&description));
+        let model = Model::from_file(&path).unwrap_or_else(|error| panic!("{error}"));
+        let (ready, begun) = (model.check(), begins(&model));
         assert!(ready.is_ok() && begun.is_ok(), "{shown}: {ready:?} {begun:?}");
     }
 }

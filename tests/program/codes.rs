@@ -10,12 +10,12 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use mbint::inner::model;
+use mbint::Model;
 use mbint::inner::syntax::{Code, MODEL};
 use rayon::prelude::*;
 
 use crate::book::expect_page;
-use crate::place::Place;
+use crate::place::{Place, told};
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -79,7 +79,7 @@ impl Tried {
 
     /// Codes with the lines of their places, 0 where there is none; and all that was said.
     fn read(&self) -> (Vec<(Code, usize)>, String) {
-        let diagnostics = model::read(&self.main, &[]).diagnostics;
+        let diagnostics = told(Model::from_file(&self.main));
         let found = diagnostics.records().iter().map(|record| (record.code, record.line.unwrap_or(0))).collect();
         (found, diagnostics.render(false))
     }

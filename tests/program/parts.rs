@@ -3,25 +3,26 @@
 use std::fs;
 use std::path::Path;
 
-use mbint::inner::model::{self, Description, Override, ParameterValue, Reading};
-use mbint::inner::study::{self, Options};
 use mbint::results::{Bounds, Summary, Verdict};
+use mbint::{Error, Model};
 
-use super::place::Place;
+use super::place::{Place, told};
 
-fn read(text: &str, set: &[&str]) -> Reading {
-    let overrides: Vec<Override> = set.iter().map(|text| Override::parse(text).unwrap()).collect();
-    model::read_str("test.yaml", text, &overrides)
+fn read(text: &str, set: &[&str]) -> Result<Model, Error> {
+    set.iter().try_fold(Model::from_yaml_str("test.yaml", text)?, |model, setting| {
+        let (name, value) = setting.split_once('=').unwrap();
+        model.with(name, value)
+    })
 }
 
 #[track_caller]
-fn good(text: &str, set: &[&str]) -> Description {
-    let reading = read(text, set);
-    reading.description.unwrap_or_else(|| panic!("{}", reading.diagnostics))
+fn good(text: &str, set: &[&str]) -> Model {
+    read(text, set).unwrap_or_else(|error| panic!("{error}"))
 }
 
-fn run(description: &Description) -> (Bounds, Summary) {
-    study::run(description, Options::default()).unwrap()
+fn run(model: &Model) -> (Bounds, Summary) {
+    let result = model.study().allow_costly().run().unwrap();
+    (result.bounds().clone(), result.summary().clone())
 }
 
 fn root() -> &'static Path {
@@ -85,9 +86,9 @@ fn what_is_repeated_gives_the_bytes_of_what_is_written_out() {
 
 #[test]
 fn the_command_line_says_how_often() {
-    let counts = |set: &[&str]| good(LINKS, set).bodies.len() - 1;
+    let counts = |set: &[&str]| good(LINKS, set).study().description().bodies.len() - 1;
     assert_eq!((counts(&[]), counts(&["N=7"]), counts(&["N=2"])), (3, 7, 2));
-    let bad = read(LINKS, &["N=2.5"]).diagnostics.records();
+    let bad = told(read(LINKS, &["N=2.5"])).records();
     assert_eq!(bad[0].message, "`N` is not a whole number");
     assert_eq!((bad[0].line, bad[0].column), (Some(5), Some(31)));
 }
@@ -114,18 +115,16 @@ bounds: { chebyshev: { order: 3 }, scan: { points: 3 } }
 ";
 
 /// Nominal, lower and upper value.
-fn interval(description: &Description, name: &str) -> Option<[f64; 3]> {
-    let parameter = description.parameters.iter().find(|parameter| parameter.name == name).unwrap();
-    match parameter.value {
-        ParameterValue::Interval { nominal, lower, upper } => Some([nominal, lower, upper]),
-        ParameterValue::Formula(_) => None,
-    }
+fn interval(model: &Model, name: &str) -> Option<[f64; 3]> {
+    let result = model.study().nominal().run().unwrap();
+    let found = result.summary().parameters.iter().find(|parameter| parameter.name == name)?;
+    Some([found.nominal, found.lower, found.upper])
 }
 
 #[test]
 fn every_instance_has_tolerances_of_its_own_but_for_those_that_are_shared() {
     let model = good(PAIR, &[]);
-    let names: Vec<&str> = model.uncertain().map(|(_, parameter)| parameter.name.as_str()).collect();
+    let names: Vec<&str> = model.uncertain().map(|(name, _)| name).collect();
     let expected = ["load", "hanger.gravity", "one.mass", "one.rate", "two.mass", "two.rate", "three.rate"];
     let mut sorted = names.clone();
     sorted.sort_unstable();
@@ -153,14 +152,14 @@ fn settings_name_an_instance_or_all_of_them() {
     assert_eq!(rates(&["hanger.rate=310±1%"]), [Some(310.0), None, Some(310.0)]);
     assert_eq!(interval(&good(PAIR, &["hanger.gravity=9.8±0.1"]), "hanger.gravity").unwrap()[0], 9.8);
     assert_eq!(interval(&good(PAIR, &["one.gravity=9.7±0.1"]), "one.gravity").unwrap()[0], 9.7);
-    let wrong = read(PAIR, &["one.rat=3"]).diagnostics.records();
+    let wrong = told(read(PAIR, &["one.rat=3"])).records();
     assert_eq!(wrong[0].message, "unknown parameter `one.rat`");
     let scenes = format!("{PAIR}scenes: {{ stiff: {{ parameters: {{ one.rate: 500 ± 1%, hanger.gravity: 9.7 }} }} }}");
-    let reading = read(&scenes, &[]);
-    assert_eq!(reading.diagnostics.records(), []);
-    let scene = &reading.scenes[0].description;
-    assert_eq!(interval(scene, "one.rate").unwrap()[0], 500.0);
-    assert_eq!(interval(scene, "hanger.gravity"), None);
+    let model = good(&scenes, &[]);
+    assert_eq!(model.warnings().records(), []);
+    let scene = model.scene("stiff").unwrap();
+    assert_eq!(interval(&scene, "one.rate").unwrap()[0], 500.0);
+    assert_eq!(interval(&scene, "hanger.gravity"), None);
 }
 
 #[test]
@@ -190,7 +189,7 @@ bounds: { chebyshev: { order: 3 }, scan: { points: 3 } }
 
 #[test]
 fn each_of_four_quarter_cars_is_one() {
-    let four = model::load(&root().join("models/quarter_cars.yaml"), &[]).unwrap();
+    let four = Model::from_file(root().join("models/quarter_cars.yaml")).unwrap();
     let text = fs::read_to_string(root().join("models/quarter_car.yaml")).unwrap();
     let text = format!(
         "{}\nbounds: {{ chebyshev: {{ order: 3 }}, scan: {{ points: 3 }} }}\n",
@@ -199,10 +198,9 @@ fn each_of_four_quarter_cars_is_one() {
     let one = text
         .replace("duration: 1.5", "duration: 1.2")
         .replace("speed:   { value: 36, unit: km/h }", "speed:   { value: 36, unit: km/h, tolerance: 5% }");
-    let set: Vec<Override> = ["damper=1 kN*s/m±30%"].map(|set| Override::parse(set).unwrap()).into();
     let (four, _) = run(&four);
-    for (output, set) in [("shake_front_left", &[][..]), ("shake_front_right", &set)] {
-        let (one, _) = run(&model::load_str("test", &one, set).unwrap());
+    for (output, set) in [("shake_front_left", &[][..]), ("shake_front_right", &["damper=1 kN*s/m±30%"])] {
+        let (one, _) = run(&good(&one, set));
         let found = four.outputs.iter().find(|found| found.name == output).unwrap();
         let expected = one.outputs.iter().find(|found| found.name == "shake").unwrap();
         assert_eq!(found.nominal, expected.nominal, "{output}");
@@ -218,7 +216,7 @@ fn each_of_four_quarter_cars_is_one() {
 #[test]
 fn an_error_names_file_instance_and_definition() {
     let path = root().join("tests/bad_models/parts-inside.yaml");
-    let report = model::read(&path, &[]).diagnostics;
+    let report = told(Model::from_file(&path));
     let records = report.records();
     let first = records.iter().find(|record| record.message == "instance `right` has no `mas`").unwrap();
     assert!(first.file.ends_with("parts/arm.yaml"), "{}", first.file);
@@ -251,9 +249,10 @@ outputs: { x: b.bob_2.ball.x, v: a.left.vx, f: a.rod.force, m: b.bob_2.mass }
 simulation: { duration: 0.1, step: 1e-3, output_step: 0.02 }
 bounds: { scan: { points: 2 } }
 ";
-    let reading =
-        read(&text.replace("initial: { a.left.x: 0, b.left.x: 1.6, b.left.vx: 1 }", "initial: { a.left.vx: 0 }"), &[]);
-    let model = reading.description.unwrap_or_else(|| panic!("{}", reading.diagnostics));
+    let model =
+        good(&text.replace("initial: { a.left.x: 0, b.left.x: 1.6, b.left.vx: 1 }", "initial: { a.left.vx: 0 }"), &[]);
+    let study = model.study();
+    let model = study.description();
     let names: Vec<&str> = model.bodies.iter().map(|body| body.name.as_str()).collect();
     assert_eq!(names, ["ground", "a.bob_1.ball", "a.bob_2.ball", "b.bob_1.ball", "b.bob_2.ball"]);
     let mass = |name: &str| model.parameters.iter().position(|parameter| parameter.name == name);
@@ -265,11 +264,11 @@ fn scenes_leave_out_by_patterns() {
     let text = format!(
         "{LINKS}scenes:\n  free: {{ without: [rub.*], outputs: {{ lost: link_1.y }} }}\n  bare: {{ without: [rub], outputs: {{ lost: link_1.y }} }}\n  first: {{ extends: bare, with: [\"*.pin_1\"] }}\n"
     );
-    let reading = read(&text, &[]);
-    assert_eq!(reading.diagnostics.records(), [], "{}", reading.diagnostics);
-    let effects = |scene: usize| reading.scenes[scene].description.effects.len();
-    assert_eq!((effects(0), effects(1), effects(2)), (1, 1, 2));
-    let wrong = read(&text.replace("rub.*", "rab.*"), &[]).diagnostics.records();
+    let model = good(&text, &[]);
+    assert_eq!(model.warnings().records(), [], "{}", model.warnings());
+    let effects = |scene: &str| model.clone().scene(scene).unwrap().study().explain().unwrap().effects.len();
+    assert_eq!((effects("free"), effects("bare"), effects("first")), (1, 1, 2));
+    let wrong = told(read(&text.replace("rub.*", "rab.*"), &[])).records();
     assert_eq!(wrong[0].message, "there is no effect, joint or output `rab.*`");
 }
 
@@ -281,9 +280,9 @@ fn what_the_pages_show_can_be_read() {
     let blocks: Vec<&str> = blocks.into_iter().filter(|block| block.starts_with("model:")).collect();
     assert_eq!(blocks.len(), 2);
     for block in blocks {
-        let reading = read(block, &[]);
-        assert!(reading.diagnostics.is_empty(), "{}", reading.diagnostics);
-        run(&reading.description.unwrap());
+        let model = good(block, &[]);
+        assert!(model.warnings().is_empty(), "{}", model.warnings());
+        run(&model);
     }
     let chapter = fs::read_to_string(root().join("docs/parts.md")).unwrap();
     let blocks: Vec<&str> = chapter.split("```yaml\n").skip(1).filter_map(|rest| rest.split("```").next()).collect();
@@ -292,7 +291,7 @@ fn what_the_pages_show_can_be_read() {
     let file = |name: &str| fs::read_to_string(root().join(name)).unwrap();
     assert!(file("models/chain.yaml").ends_with(chain));
     assert_eq!(file("docs/examples/box_of_links.yaml"), *links);
-    let (_, summary) = run(&model::load(&root().join("docs/examples/box_of_links.yaml"), &[]).unwrap());
+    let (_, summary) = run(&Model::from_file(root().join("docs/examples/box_of_links.yaml")).unwrap());
     assert_eq!(summary.assemblies[0].independent.len(), 3);
     assert_eq!(summary.parameters.len(), 3);
 }
@@ -308,7 +307,7 @@ fn the_platform_is_short() {
 /// The pads move without turning, so the gap is that of the offsets, lengths and thicknesses of two fingers.
 #[test]
 fn a_gripper_of_a_finger_and_its_image_has_its_gap() {
-    let (bounds, summary) = run(&model::load(&root().join("models/gripper.yaml"), &[]).unwrap());
+    let (bounds, summary) = run(&Model::from_file(root().join("models/gripper.yaml")).unwrap());
     let [gap, middle] = ["gap", "middle"].map(|name| bounds.outputs.iter().find(|output| output.name == name).unwrap());
     for (row, t) in bounds.times.iter().enumerate() {
         let u = (t / 0.4).min(1.0);

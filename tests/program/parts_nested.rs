@@ -3,21 +3,29 @@
 use std::fs;
 use std::path::Path;
 
-use mbint::inner::model::{self, Description, Override};
-use mbint::inner::study::{self, Options};
-use mbint::results::Bounds;
+use mbint::Model;
+use mbint::results::{Bounds, Summary};
 use nalgebra::{Matrix2, Matrix3, Quaternion, Rotation2, Rotation3, UnitQuaternion, Vector2, Vector3};
 
 #[track_caller]
-fn read(text: &str, set: &[&str]) -> Description {
-    let set: Vec<Override> = set.iter().map(|text| Override::parse(text).unwrap()).collect();
-    let reading = model::read_str("test.yaml", text, &set);
-    reading.description.unwrap_or_else(|| panic!("{}", reading.diagnostics))
+fn read(text: &str, set: &[&str]) -> Model {
+    let model = Model::from_yaml_str("test.yaml", text);
+    let model = set.iter().fold(model, |model, setting| {
+        let (name, value) = setting.split_once('=').unwrap();
+        model?.with(name, value)
+    });
+    model.unwrap_or_else(|error| panic!("{error}"))
+}
+
+#[track_caller]
+fn run(model: &Model) -> (Bounds, Summary) {
+    let result = model.study().allow_costly().run().unwrap();
+    (result.bounds().clone(), result.summary().clone())
 }
 
 #[track_caller]
 fn bounds(text: &str) -> Bounds {
-    study::run(&read(text, &[]), Options::default()).unwrap().0
+    run(&read(text, &[])).0
 }
 
 /// The output's nominal course and its bounds.
@@ -474,7 +482,7 @@ outputs: {{ x: left.one.ground.x, y: left.one.ground.y, z: left.one.ground.z, ha
     );
     let at = |set: &[&str]| {
         let model = read(&text, set);
-        let (found, _) = study::run(&model, Options::default()).unwrap();
+        let (found, _) = run(&model);
         ["x", "y", "z"].map(|output| courses(&found, output)[0][0])
     };
     // The image of 0.1 along x is −0.1, which a quarter turn has along −y.
@@ -485,10 +493,10 @@ outputs: {{ x: left.one.ground.x, y: left.one.ground.y, z: left.one.ground.z, ha
     near(at(&["left.one.at.x=0.3"]), [1.0, 1.7, 3.0]);
     near(at(&["left.at.angle=0", "left.at.z=4"]), [0.9, 2.0, 4.0]);
     let mut names: Vec<String> =
-        read(&text, &["left.at.angle=90±1 deg"]).uncertain().map(|(_, p)| p.name.clone()).collect();
+        read(&text, &["left.at.angle=90±1 deg"]).uncertain().map(|(name, _)| name.to_owned()).collect();
     names.sort_unstable();
     assert_eq!(names, ["arm.l", "left.at.angle", "left.at.z", "left.one.at.yaw"]);
-    let assemblies = study::run(&read(&text, &[]), Options::default()).unwrap().1.assemblies;
+    let assemblies = run(&read(&text, &[])).1.assemblies;
     assert_eq!(assemblies[0].independent, ["left.at.z"]);
     assert_eq!(assemblies[1].independent, ["left.one.at.yaw"]);
 }
@@ -536,8 +544,8 @@ fn a_gripper_of_linkages_is_the_gripper() {
     let page = fs::read_to_string(root().join("docs/guides/parts.md")).unwrap();
     assert!(page.contains(&fs::read_to_string(root().join(file)).unwrap()));
     let [parts, whole] = [file, "models/gripper.yaml"].map(|file| {
-        let model = model::load(&root().join(file), &[]).unwrap();
-        study::run(&model, Options::default()).unwrap().0
+        let model = Model::from_file(root().join(file)).unwrap();
+        run(&model).0
     });
     same(&parts, &whole);
 }
@@ -545,8 +553,8 @@ fn a_gripper_of_linkages_is_the_gripper() {
 /// Legs that differ by their places alone move alike, and start where plane geometry says.
 #[test]
 fn legs_around_a_body_move_alike() {
-    let model = model::load(&root().join("docs/examples/hexapod.yaml"), &[]).unwrap();
-    let (found, _) = study::run(&model, Options::default()).unwrap();
+    let model = Model::from_file(root().join("docs/examples/hexapod.yaml")).unwrap();
+    let (found, _) = run(&model);
     let bend = 80_f64.to_radians();
     for (output, start) in [("foot", -0.16 * bend.sin()), ("reach", 0.1 + 0.12 + 0.16 * bend.cos())] {
         let first = courses(&found, &format!("{output}_1"));

@@ -4,6 +4,7 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
+use mbint::{Diagnostics, Error, Model};
 use tempfile::TempDir;
 
 /// A folder of its own for each test, in which commands run.
@@ -53,5 +54,14 @@ impl Place {
         names.retain(|name| name != ".mbint.json");
         names.sort();
         names
+    }
+}
+
+/// All that is wrong with a model, or probably not meant.
+pub fn told(model: Result<Model, Error>) -> Diagnostics {
+    match model {
+        Ok(model) => model.warnings().clone(),
+        Err(Error::Model(diagnostics)) => diagnostics,
+        Err(error) => panic!("{error}"),
     }
 }

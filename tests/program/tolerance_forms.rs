@@ -1,7 +1,7 @@
 //! One notation of tolerances, wherever a number may have one: in one piece, in the long form, of a robot's number, on
 //! the command line.
 
-use mbint::inner::model::{self, Description, Override, ParameterValue};
+use mbint::Model;
 
 /// What is written, and the interval about 0.5 that it stands for.
 const WHOLE: [(&str, [f64; 2]); 9] = [
@@ -32,13 +32,11 @@ const ROBOT: &str = r#"<robot name="arm">
 </robot>"#;
 
 /// The interval of a parameter.
-fn interval(description: &Description, name: &str) -> [f64; 2] {
-    let parameter = description.parameters.iter().find(|parameter| parameter.name == name).unwrap();
-    let ParameterValue::Interval { lower, upper, .. } = parameter.value else { panic!("{name} is certain") };
-    [lower, upper]
+fn interval(model: &Model, name: &str) -> [f64; 2] {
+    model.uncertain().find(|(known, _)| *known == name).unwrap_or_else(|| panic!("{name} is certain")).1
 }
 
-fn rod(parameter: &str, set: &[Override]) -> Description {
+fn rod(parameter: &str) -> Model {
     let text = format!(
         "model: rod
 parameters: {{ m: {parameter} }}
@@ -49,7 +47,7 @@ simulation: {{ duration: 0.1, step: 1e-3 }}
 bounds: {{ chebyshev: {{ order: 2 }} }}
 "
     );
-    model::load_str("test.yaml", &text, set).unwrap_or_else(|error| panic!("{parameter}: {error}"))
+    Model::from_yaml_str("test.yaml", &text).unwrap_or_else(|error| panic!("{parameter}: {error}"))
 }
 
 #[track_caller]
@@ -62,25 +60,25 @@ fn assert_near(found: [f64; 2], expected: [f64; 2], form: &str) {
 fn parameters_take_every_form() {
     for (form, expected) in WHOLE {
         for place in [format!("\"{form}\""), format!("{{ value: \"{form}\" }}")] {
-            assert_near(interval(&rod(&place, &[]), "m"), expected, &place);
+            assert_near(interval(&rod(&place), "m"), expected, &place);
         }
     }
     for (form, expected) in ALONE {
         let place = format!("{{ value: 0.5 kg, tolerance: {form} }}");
-        assert_near(interval(&rod(&place, &[]), "m"), expected, &place);
+        assert_near(interval(&rod(&place), "m"), expected, &place);
     }
     // Numbers are in the unit of the key where there is one.
     let place = "{ value: 500, unit: g, tolerance: +10 -20 }";
-    assert_near(interval(&rod(place, &[]), "m"), [0.48, 0.51], place);
+    assert_near(interval(&rod(place), "m"), [0.48, 0.51], place);
 }
 
 #[test]
 fn the_command_line_takes_every_form() {
     for (form, expected) in WHOLE.into_iter().chain(ALONE) {
-        let set = Override::parse(&format!("m={form}")).unwrap_or_else(|error| panic!("{form}: {error}"));
         // A whole number replaces what the file says, a deviation alone is of the file's value.
         let file = if WHOLE.contains(&(form, expected)) { "3 kg" } else { "0.5 kg" };
-        assert_near(interval(&rod(file, &[set]), "m"), expected, form);
+        let model = rod(file).with("m", form).unwrap_or_else(|error| panic!("{form}: {error}"));
+        assert_near(interval(&model, "m"), expected, form);
     }
 }
 
@@ -104,7 +102,7 @@ bounds: {{ chebyshev: {{ order: 2 }} }}
             );
             let path = folder.path().join("arm.yaml");
             std::fs::write(&path, text).unwrap();
-            let description = model::load(&path, &[]).unwrap_or_else(|error| panic!("{place}: {error}"));
+            let description = Model::from_file(&path).unwrap_or_else(|error| panic!("{place}: {error}"));
             assert_near(interval(&description, "link.rod.mass"), expected, &place);
         }
     }

@@ -1,7 +1,7 @@
 //! Every question of the command line, asked from Rust.
 
 use mbint::results::{Criterion, Verdict};
-use mbint::{Axis, Error, Method, Model, Study};
+use mbint::{Axis, Error, Formulation, Method, Model, RangeKind, SchemeChoice, Study};
 
 /// A gap c − a − 2b of 1 mm, whose normal parts add to σ² = (0.1² + 0.4² + 0.1²)/9 mm².
 const STACK: &str = "
@@ -51,7 +51,7 @@ fn bounds_verdicts_and_statistics_of_a_stack_are_those_of_sums() {
 #[test]
 fn a_model_is_checked_and_explained_before_it_runs() {
     stack().check().unwrap();
-    let explanation = stack().explain().unwrap();
+    let explanation = stack().study().explain().unwrap();
     assert_eq!(explanation.coordinates.len(), 1, "{explanation:?}");
     // A bar of 1 m does not reach over 3 m.
     let apart = "
@@ -75,6 +75,121 @@ fn the_nominal_motion_alone_has_no_bands() {
     // A method that is chosen afterwards is run.
     let result = stack().study().nominal().chebyshev(1).run().unwrap();
     assert!(result.output("gap").unwrap().band(Method::Chebyshev).is_some());
+}
+
+const SWING: &str = "
+model: swing
+parameters: { l: { value: 0.8, unit: m, tolerance: 2% } }
+bodies: { rod: { mass: 1, inertia: 0.05, points: { pin: [-l/2, 0] } } }
+joints: { hinge: { revolute: [ground, rod.pin] } }
+effects: { weight: { gravity: { acceleration: [0, -9.81] } } }
+initial: { rod.angle: 0, rod.angular_velocity: 0 }
+outputs: { angle: rod.angle }
+simulation: { duration: 0.4, step: 1e-3, output_step: 0.1 }
+bounds: { chebyshev: { order: 3 }, scan: { points: 4 } }
+";
+
+fn swing() -> Model {
+    Model::from_yaml_str("swing.yaml", SWING).unwrap()
+}
+
+/// The angle at the end.
+fn end(study: Study) -> f64 {
+    *study.run().unwrap().output("angle").unwrap().nominal().last().unwrap()
+}
+
+/// Coordinates, schemes, steps and rows are the study's: the motion stays, to the errors of the steps.
+#[test]
+fn a_motion_is_integrated_as_the_study_says() {
+    let plain = end(swing().study().nominal().step(1e-4));
+    let studies = [
+        swing().study().formulation(Formulation::Absolute).extrapolation(3),
+        swing().study().scheme(SchemeChoice::Explicit).step_tolerance(1e-8),
+        swing().study().alpha(-0.05).step(2e-4),
+    ];
+    for study in studies {
+        let found = end(study.nominal());
+        assert!((found - plain).abs() < 1e-5, "{found}, not {plain}");
+    }
+    let result = swing().study().nominal().output_step(0.05).run().unwrap();
+    assert_eq!(result.times().len(), 9);
+    let coordinates = |formulation| swing().study().formulation(formulation).explain().unwrap().coordinates.len();
+    assert_eq!((coordinates(Formulation::Joint), coordinates(Formulation::Absolute)), (1, 3));
+}
+
+#[test]
+fn settings_outside_of_their_ranges_are_errors() {
+    for (study, message) in [
+        (swing().study().step(0.0), "the step must be positive, but is 0"),
+        (swing().study().output_step(f64::NAN), "the output step must be positive, but is NaN"),
+        (swing().study().duration(-1.0), "the duration must be positive, but is -1"),
+        (swing().study().step_tolerance(-1.0), "the tolerance of the steps must be positive, but is -1"),
+        (swing().study().alpha(0.0), "α = 0 is outside [-1/3, 0)"),
+        (swing().study().extrapolation(5), "`extrapolation` combines 2, 3 or 4 step lengths, not 5"),
+        (
+            swing().study().extrapolation(2).scheme(SchemeChoice::Explicit),
+            "extrapolation is of HHT-I3, but the scheme is explicit",
+        ),
+    ] {
+        let error = study.run().unwrap_err();
+        assert!(matches!(error, Error::Setting(_)), "{error}");
+        assert_eq!((error.to_string().as_str(), error.code()), (message, Some("E0307")));
+    }
+}
+
+#[test]
+fn methods_are_those_of_the_model_with_what_the_study_says() {
+    let methods = |study: Study| -> Vec<Method> {
+        study.run().unwrap().output("angle").unwrap().bands().map(|band| band.method()).collect()
+    };
+    assert_eq!(methods(swing().study()), [Method::Chebyshev, Method::Scan]);
+    assert_eq!(methods(swing().study().methods(&[Method::Scan, Method::Taylor])), [Method::Taylor, Method::Scan]);
+    let simulations = |study: Study, name: &str| {
+        let result = study.run().unwrap();
+        result.summary().methods.iter().find(|own| own.method == name).unwrap().simulations
+    };
+    // As the model asks for it.
+    assert_eq!(simulations(swing().study().methods(&[Method::Scan]), "scan"), 4);
+    // An interval evaluation is wider than the polynomial's own range.
+    let widths = [RangeKind::Tight, RangeKind::Interval].map(|range| {
+        let result = swing().study().chebyshev(4).range(range).run().unwrap();
+        let band = result.output("angle").unwrap().best().unwrap();
+        band.upper().last().unwrap() - band.lower().last().unwrap()
+    });
+    assert!(widths[1] > widths[0], "{widths:?}");
+    let [few, enough] = [3, 1000].map(|most| simulations(swing().study().tolerance(1e-7).budget(most), "chebyshev"));
+    assert!(few <= 3 && enough > 3, "{few} {enough}");
+}
+
+#[test]
+fn other_outputs_are_observed() {
+    let model = swing().observing(&[("tip", "rod.x + 0.1 m"), ("energy", "energy")]).unwrap();
+    assert_eq!(model.outputs().collect::<Vec<_>>(), [("tip", "m"), ("energy", "J")]);
+    assert_eq!(model.duration(), 0.4);
+    // They stay where a parameter is set.
+    let longer = model.with("l", "1 m ± 1%").unwrap();
+    near(longer.study().nominal().run().unwrap().output("tip").unwrap().nominal()[0], 0.6);
+    let error = swing().observing(&[("tip", "rad.x")]).unwrap_err();
+    assert!(error.to_string().contains("unknown body or joint `rad`"), "{error}");
+}
+
+/// The worst function of an excitation, replayed.
+#[test]
+fn witnesses_are_replayed() {
+    let text = SWING.replace(
+        "effects: { ",
+        "excitations: { push: { within: ± 1 N } }\neffects: { shove: { force: { on: rod, value: [push, 0] } }, ",
+    );
+    let model = Model::from_yaml_str("pushed.yaml", &text).unwrap();
+    let worst = model.study().run().unwrap().bounds().functions.first().unwrap().clone();
+    let rows = worst.functions[0].points.iter().map(|(time, value)| format!("{time},{value}\n"));
+    let replayed = model.clone().replaying(&format!("t,push\n{}", rows.collect::<String>())).unwrap();
+    let result = replayed.study().nominal().run().unwrap();
+    let row = result.times().iter().position(|time| Some(*time) == worst.time).unwrap();
+    let found = result.output("angle").unwrap().nominal()[row];
+    assert!((found - worst.value).abs() < 0.05 * worst.value.abs(), "{found}, not {}", worst.value);
+    let error = model.replaying("t,pull\n0,1\n1,1\n").unwrap_err();
+    assert!(matches!(error, Error::Witness(_)), "{error}");
 }
 
 #[test]

@@ -3,16 +3,15 @@
 
 use std::fmt::Write as _;
 
-use mbint::inner::model::Description;
 use mbint::results::Bounds;
 
 use crate::common::measured::Case;
-use crate::common::{Findings, Vary, curve, largest, model, nominal, order, read, reference, row, run_methods};
+use crate::common::{Findings, Subject, curve, largest, model, nominal, order, read, reference, row, run_methods};
 
 /// A benchmark with what is known of its solution.
 struct Benchmark {
     name: &'static str,
-    description: Description,
+    description: Subject,
     formulas: &'static [&'static str],
     /// The library that has it, and how its solution was found.
     source: &'static str,
@@ -30,12 +29,7 @@ struct Solution {
 }
 
 impl Benchmark {
-    fn new(
-        name: &'static str,
-        description: Description,
-        formulas: &'static [&'static str],
-        solution: &Solution,
-    ) -> Self {
+    fn new(name: &'static str, description: Subject, formulas: &'static [&'static str], solution: &Solution) -> Self {
         let is_row = |row: &Vec<f64>| {
             let place = row[0] / solution.every;
             (place - place.round()).abs() < 1e-6 && row[0] <= solution.duration * (1.0 + 1e-9)

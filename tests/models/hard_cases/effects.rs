@@ -1,16 +1,14 @@
 //! Stiff and non-smooth effects: impacts, sticking, a loose pin, a brake. The references are closed forms, and the same
 //! laws in minimal coordinates solved by another method whose steps fall at events.
 
-use mbint::inner::methods::{BoundsRequest, Chebyshev, Scan};
-use mbint::inner::model::Description;
 use mbint::results::Method;
 
 use crate::common::dormand_prince::dormand_prince;
 use crate::common::restitution::restitution;
-use crate::common::{Vary, band, curve, largest, nominal, order, output, read, run, run_methods, uncertain_count};
+use crate::common::{Subject, band, curve, largest, nominal, order, output, read, run, run_methods};
 
 /// Largest errors of an output against a curve at the output times, for some steps.
-fn errors_of_steps(description: &Description, name: &str, truth: &[f64], steps: &[f64]) -> Vec<f64> {
+fn errors_of_steps(description: &Subject, name: &str, truth: &[f64], steps: &[f64]) -> Vec<f64> {
     let error = |&h: &f64| {
         let bounds = nominal(&description.clone().step(h));
         let error = largest(curve(&bounds, name).iter().zip(truth).map(|(value, truth)| value - truth));
@@ -23,7 +21,7 @@ fn errors_of_steps(description: &Description, name: &str, truth: &[f64], steps: 
 }
 
 /// The same for some tolerances, each below so many times the tolerance and the last below the first.
-fn errors_within(description: &Description, name: &str, truth: &[f64], tolerances: &[f64], times: f64) {
+fn errors_within(description: &Subject, name: &str, truth: &[f64], tolerances: &[f64], times: f64) {
     let mut errors = Vec::new();
     for &tolerance in tolerances {
         let (bounds, summary) = run_methods(&description.clone().tolerance(tolerance), Some(Vec::new()));
@@ -51,13 +49,8 @@ fn settles_at_order_two(errors: &[f64]) {
 
 /// Bounds by Chebyshev polynomials and by a scan hold what some samples of the truth do, within the errors that they
 /// report. `allowed` is how far ends may be off, relative to the widest range.
-fn bounds_hold(mut description: Description, name: &str, truths: &[Vec<f64>], allowed: f64) {
-    let k = uncertain_count(&description);
-    description.bounds = BoundsRequest {
-        chebyshev: Some(Chebyshev::of_order(12, k)),
-        scan: Some(Scan::of_points(41, k)),
-        ..Default::default()
-    };
+fn bounds_hold(description: Subject, name: &str, truths: &[Vec<f64>], allowed: f64) {
+    let description = description.asking(|study| study.chebyshev(12).scan(41));
     let bounds = run(&description);
     let rows = bounds.times.len();
     let range = |row: usize| {
@@ -97,7 +90,7 @@ fn points(a: f64, b: f64, n: usize) -> impl Iterator<Item = f64> {
 const G: f64 = 9.81;
 
 /// It falls from 1 m on a floor that keeps `e` of the speed by Hunt and Crossley's formula.
-fn ball(stiffness: f64, run: &str) -> Description {
+fn ball(stiffness: f64, run: &str) -> Subject {
     read(&format!(
         "
 parameters: {{ e: {{ value: 0.8, tolerance: 2.5% }} }}
@@ -188,7 +181,7 @@ const COULOMB: f64 = 2.0;
 const BREAKAWAY: f64 = 1.5;
 
 /// The excess of friction at rest fades over `fading` m/s, and a hundredth of that counts as rest.
-fn belt(fading: f64, run: &str) -> Description {
+fn belt(fading: f64, run: &str) -> Subject {
     read(&format!(
         "
 parameters: {{ F: {{ value: {COULOMB}, tolerance: 5% }} }}
@@ -265,7 +258,7 @@ const CRANK: f64 = 0.05;
 const ROD: f64 = 0.12;
 const SPEED: f64 = std::f64::consts::TAU;
 
-fn loose_pin(run: &str) -> Description {
+fn loose_pin(run: &str) -> Subject {
     read(&format!(
         "
 parameters:
@@ -365,7 +358,7 @@ fn bounds_of_a_slider_crank_with_clearance_hold() {
 /// What counts as rest, rad/s.
 const REST: f64 = 1e-3;
 
-fn wheel(run: &str) -> Description {
+fn wheel(run: &str) -> Subject {
     read(&format!(
         "
 parameters: {{ mu: {{ value: 0.2, tolerance: 10% }} }}
@@ -447,7 +440,7 @@ simulation: {{ duration: 2, step: 1e-3, output_step: 0.02 }}
 // --- What order events leave.
 
 /// Mean errors over many places of an event within a step, for steps that are halved.
-fn mean_errors(case: impl Fn(f64) -> (Description, f64), steps: &[f64]) -> Vec<f64> {
+fn mean_errors(case: impl Fn(f64) -> (Subject, f64), steps: &[f64]) -> Vec<f64> {
     let phases = 30;
     let mean = |&h: &f64| {
         let errors = (0..phases).map(|phase| {

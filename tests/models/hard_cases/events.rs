@@ -3,10 +3,7 @@
 
 use std::f64::consts::PI;
 
-use mbint::inner::study::{self, Options};
-use mbint::results::Method;
-
-use crate::common::{Vary, largest, read, run_methods};
+use crate::common::{largest, read, run_methods};
 
 /// Errors of the first output against a closed form, for some tolerances.
 fn errors(text: &str, tolerances: &[f64], exact: impl Fn(f64) -> f64) -> Vec<f64> {
@@ -110,9 +107,7 @@ simulation: { duration: 3, step: 1e-3, output_step: 0.05 }
 }
 
 fn failure(text: &str, tolerance: f64) -> String {
-    let description = read(text).tolerance(tolerance);
-    let options = Options { methods: Some(Vec::<Method>::new()), threads: Some(2), ..Options::default() };
-    study::run(&description, options).unwrap().1.failure.expect("the run ends early")
+    read(text).tolerance(tolerance).finished(Some(Vec::new())).1.failure.expect("the run ends early")
 }
 
 #[test]

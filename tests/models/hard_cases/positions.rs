@@ -1,6 +1,6 @@
 //! Positions that are hard: dead centres, change points, toggles, and those where a mechanism locks.
 
-use crate::common::{Vary, curve, largest, nominal, order, ran, read, run_methods, study_of};
+use crate::common::{curve, largest, nominal, order, ran, read, run_methods, study_of};
 
 /// A four-bar linkage with a driven crank of `crank` m, on a base of 0.4 m, with coupler and rocker of 0.2 m and 0.25
 /// m.

@@ -9,7 +9,7 @@ use mbint::inner::study;
 use nalgebra::DMatrix;
 
 use crate::common::runge_kutta::runge_kutta;
-use crate::common::{Vary, curve, distance, largest, model, nominal, order, read, row};
+use crate::common::{curve, distance, largest, model, nominal, order, read, row};
 
 /// A pendulum's angle from the horizontal, and its rate, at t: θ̈ = −(g/L) cos θ, by Runge and Kutta's fourth-order
 /// method with so many steps.
@@ -90,7 +90,7 @@ fn the_newton_matrix_is_as_well_conditioned_with_any_step() {
         let conditions: Vec<f64> = (longest..=8)
             .map(|exponent| {
                 let h = 10.0_f64.powi(-exponent);
-                condition(&study::prepare(&model(name).step(h)).unwrap(), h)
+                condition(&study::prepare(model(name).step(h).study().description()).unwrap(), h)
             })
             .collect();
         let texts: Vec<String> = conditions.iter().map(|condition| format!("{condition:.3e}")).collect();
@@ -105,8 +105,12 @@ fn any_damping_of_the_scheme_is_of_second_order() {
     let exact = swing(9.81, 2.0, 20_000);
     for alpha in [-1.0 / 3.0, -0.1, -0.03, -1e-2, -1e-3] {
         let errors = [2e-3, 1e-3].map(|h| {
-            let mut description = model("pendulum").duration(2.0).rows_every(2.0).step(h).observing(&["bob.y"]);
-            description.simulation.alpha = alpha;
+            let description = model("pendulum")
+                .duration(2.0)
+                .rows_every(2.0)
+                .step(h)
+                .observing(&["bob.y"])
+                .asking(move |study| study.alpha(alpha));
             (curve(&nominal(&description), "bob.y")[1] - exact[0].sin()).abs()
         });
         println!("alpha = {alpha}: {errors:?}");

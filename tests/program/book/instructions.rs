@@ -78,7 +78,7 @@ fn the_instructions_of_shipped_models_are_those_of_the_page() {
             if scenes.is_empty() { vec![None] } else { scenes.into_iter().map(Some).collect() };
         for scene in scenes {
             let model = scene.iter().fold(model.clone(), |model, scene| model.scene(scene).unwrap());
-            let explanation = model.explain().unwrap_or_else(|error| panic!("{name}: {error}"));
+            let explanation = model.study().explain().unwrap_or_else(|error| panic!("{name}: {error}"));
             let called = scene.map_or_else(|| name.to_string(), |scene| format!("{name}, {scene}"));
             let (coordinates, matrix) = (explanation.coordinates.len(), explanation.newton.size);
             write!(page, "| {called} | {coordinates} | {matrix} |").unwrap();

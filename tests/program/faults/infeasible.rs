@@ -1,18 +1,20 @@
 //! Boxes in part of which the mechanism cannot be assembled, or locks.
 
-use mbint::inner::export::bounds_csv;
-use mbint::inner::model::{self, Description};
-use mbint::inner::study::{self, Options};
-use mbint::results::Summary;
-use mbint::results::{Band, Bounds, Method};
+use mbint::results::{Band, Bounds, Method, Summary};
+use mbint::{Error, Model, Study, StudyResult};
 
-fn read(text: &str) -> Description {
-    model::load_str("test", text, &[]).unwrap_or_else(|diagnostics| panic!("{diagnostics}"))
+fn read(text: &str) -> Model {
+    Model::from_yaml_str("test", text).unwrap_or_else(|error| panic!("{error}"))
 }
 
-fn run(description: &Description, skip_infeasible: bool) -> Result<(Bounds, Summary), String> {
-    let options = Options { threads: Some(2), skip_infeasible, ..Options::default() };
-    study::run(description, options).map_err(|error| error.to_string())
+fn finished(study: Study, skip_infeasible: bool) -> Result<StudyResult, Error> {
+    let study = study.threads(2).allow_costly();
+    if skip_infeasible { study.skip_infeasible().run() } else { study.run() }
+}
+
+fn run(model: &Model, skip_infeasible: bool) -> Result<(Bounds, Summary), String> {
+    let done = finished(model.study(), skip_infeasible).map_err(|error| error.to_string())?;
+    Ok((done.bounds().clone(), done.summary().clone()))
 }
 
 fn band(bounds: &Bounds, method: Method) -> &Band {
@@ -21,7 +23,7 @@ fn band(bounds: &Bounds, method: Method) -> &Band {
 
 /// A crank of 0.1 m, upright, whose end is √(0.3² + 0.1²) m from the rocker's pivot: coupler and rocker together are at
 /// least as long. Further parameters do not matter.
-fn four_bar(coupler: &str, further: &str) -> Description {
+fn four_bar(coupler: &str, further: &str) -> Model {
     read(&format!(
         "
 parameters: {{ l: {{ {coupler} }}, further: {{ {further} }} }}
@@ -110,7 +112,8 @@ fn what_cannot_be_assembled_is_reported_with_its_place_and_share() {
 #[test]
 fn the_rest_is_bounded_and_says_how_much_it_is() {
     let description = four_bar(WIDE, FURTHER);
-    let (bounds, summary) = run(&description, true).unwrap();
+    let result = finished(description.study(), true).unwrap();
+    let (bounds, summary) = (result.bounds(), result.summary());
     assert_eq!(summary.failure, None);
     let true_share = (longest() - 0.24) / 0.31;
     let covered = bounds.covered[0];
@@ -118,7 +121,9 @@ fn the_rest_is_bounded_and_says_how_much_it_is() {
     assert!(bounds.covered.iter().all(|&share| share == covered), "what is lost is lost at the start");
     let reached = summary.pieces.iter().map(|piece| piece.upper[0]).fold(0.0, f64::max);
     assert!(reached < longest() && reached > longest() - 0.01, "{reached} of {}", longest());
-    let table = String::from_utf8(bounds_csv(&bounds).unwrap()).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    result.write(folder.path()).unwrap();
+    let table = std::fs::read_to_string(folder.path().join("bounds.csv")).unwrap();
     assert!(table.lines().next().unwrap().ends_with(",unresolved,covered"));
     assert!(table.lines().skip(1).all(|row| row.ends_with(&format!(",{covered}"))), "{table}");
 
@@ -131,7 +136,7 @@ fn the_rest_is_bounded_and_says_how_much_it_is() {
     };
     let expected = [angle(reached), angle(0.24)];
     for method in [Method::Chebyshev, Method::Scan] {
-        let band = band(&bounds, method);
+        let band = band(bounds, method);
         let error = band.error.total[0];
         println!("{}: {} to {} ± {error}, {expected:?}", method.name(), band.lower[0], band.upper[0]);
         assert!(
@@ -162,7 +167,7 @@ fn what_is_nowhere_feasible_is_an_error_with_and_without() {
 
 /// A rocker between 0.135 and 0.155 m: at 0.14 m Grashof's condition 0.1 + 0.3 ≤ 0.26 + r is met, below the motor
 /// cannot turn the crank all round.
-fn grashof() -> Description {
+fn grashof() -> Model {
     read(
         "
 parameters: { r: { value: 0.145, tolerance: 0.01 } }
@@ -241,12 +246,11 @@ bounds: {{ scan: {{ points: 12 }} }}
     let failure = summary.failure.unwrap();
     assert!(failure.contains("k = 1)") && failure.contains("did not converge at t = 1."), "{failure}");
     // The same samples without the first.
-    let mut others = model("[2, 12]");
-    others.bounds.scan.as_mut().unwrap().points = vec![11];
-    let (alone, _) = run(&others, false).unwrap();
+    let result = finished(model("[2, 12]").study().scan(11), false).unwrap();
+    let alone = result.bounds();
     let last = bounds.times.len() - 1;
     assert_eq!(bounds.times, alone.times);
-    let (with, without) = (band(&bounds, Method::Scan), band(&alone, Method::Scan));
+    let (with, without) = (band(&bounds, Method::Scan), band(alone, Method::Scan));
     // Points of another interval are the same but for rounding; its validation samples, which the band holds too, are
     // not.
     let off = (with.lower[last] - without.lower[last]).abs().max((with.upper[last] - without.upper[last]).abs());
@@ -258,10 +262,9 @@ bounds: {{ scan: {{ points: 12 }} }}
 /// The same with steps from a tolerance: a corner for which no step is small enough does not end the others' schedule.
 #[test]
 fn a_controlling_sample_that_locks_leaves_the_schedule_to_the_others() {
-    let mut description = grashof();
-    description.simulation.stepping = model::Stepping::Tolerance(1e-5);
-    let (bounds, summary) = run(&description, false).unwrap();
-    assert!(summary.failure.unwrap().contains("r = 0.13"), "the sample is named");
+    let result = finished(grashof().study().step_tolerance(1e-5), false).unwrap();
+    let bounds = result.bounds();
+    assert!(result.failure().unwrap().contains("r = 0.13"), "the sample is named");
     assert_eq!(bounds.times.len(), 13);
     assert!(bounds.outputs[0].nominal.iter().all(|angle| angle.is_finite()));
 }

@@ -1,11 +1,11 @@
 //! Models of one to many bodies: a chain, swinging from one end.
 
-use mbint::inner::model::{self, Description};
-use mbint::inner::study::{self, Options};
+use mbint::Model;
+use mbint::inner::study;
 
 use crate::place::Place;
 
-fn chain(bodies: usize, duration: f64) -> Description {
+fn chain(bodies: usize, duration: f64) -> Model {
     let each = |line: &dyn Fn(usize) -> String| (0..bodies).map(line).collect::<Vec<_>>().join("\n  ");
     let text = format!(
         "
@@ -30,7 +30,7 @@ bounds: {{ chebyshev: {{ order: 1, expand: output }} }}
         last = bodies - 1,
         before = if bodies == 1 { "0".to_owned() } else { format!("b{}.b.x", bodies - 2) },
     );
-    model::load_str("chain", &text, &[]).unwrap_or_else(|diagnostics| panic!("{diagnostics}"))
+    Model::from_yaml_str("chain", &text).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// Pivots that were freely chosen let errors grow from body to body: 100 bodies did not make a step, 1000 were
@@ -38,10 +38,10 @@ bounds: {{ chebyshev: {{ order: 1, expand: output }} }}
 #[test]
 fn long_chains_swing_and_keep_their_energy() {
     for (bodies, duration) in [(1, 0.1), (10, 0.1), (100, 0.02), (500, 0.005)] {
-        let (bounds, summary) =
-            study::run(&chain(bodies, duration), Options { threads: Some(2), ..Options::default() })
-                .unwrap_or_else(|error| panic!("{bodies} bodies: {error}"));
-        assert_eq!((summary.failure, summary.degrees_of_freedom), (None, bodies));
+        let study = chain(bodies, duration).study().threads(2).allow_costly();
+        let result = study.run().unwrap_or_else(|error| panic!("{bodies} bodies: {error}"));
+        let (bounds, summary) = (result.bounds(), result.summary());
+        assert_eq!((summary.failure.as_deref(), summary.degrees_of_freedom), (None, bodies));
         let of = |output: usize| &bounds.outputs[output].nominal;
         let moved = (of(0)[1] - of(0)[0]).abs();
         let lost = (of(1)[1] - of(1)[0]).abs();
@@ -56,7 +56,8 @@ fn long_chains_swing_and_keep_their_energy() {
 /// A file of this size is read and assembled.
 #[test]
 fn ten_thousand_bodies_are_counted() {
-    let simulator = study::prepare(&chain(if cfg!(debug_assertions) { 2000 } else { 10_000 }, 1e-3)).unwrap();
+    let model = chain(if cfg!(debug_assertions) { 2000 } else { 10_000 }, 1e-3);
+    let simulator = study::prepare(model.study().description()).unwrap();
     assert_eq!(simulator.mobility.degrees_of_freedom, simulator.system.q.len() / 3);
 }
 
@@ -91,8 +92,8 @@ fn a_long_robot_is_checked_in_the_memory_that_it_takes() {
     std::fs::write(place.path().join("few.urdf"), robot(6)).unwrap();
     let instructions = |links: usize| {
         std::fs::write(place.path().join("few.urdf"), robot(links)).unwrap();
-        let description = model::load(&place.path().join("few.yaml"), &[]).unwrap();
-        let simulator = study::prepare(&description).unwrap();
+        let model = Model::from_file(place.path().join("few.yaml")).unwrap();
+        let simulator = study::prepare(model.study().description()).unwrap();
         simulator.start.position().len() + simulator.start.velocity().len() + simulator.start.acceleration().len()
     };
     let [few, twice] = [8, 16].map(instructions);

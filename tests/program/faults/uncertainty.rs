@@ -1,20 +1,19 @@
 //! Intervals without width, parameters of very different sizes, bifurcations.
 
-use mbint::inner::model::{self, Description};
-use mbint::inner::study::{self, Options};
+use mbint::Model;
 use mbint::results::{Bounds, Method};
 
-fn read(text: &str) -> Description {
-    model::load_str("test", text, &[]).unwrap_or_else(|diagnostics| panic!("{diagnostics}"))
+fn read(text: &str) -> Model {
+    Model::from_yaml_str("test", text).unwrap_or_else(|error| panic!("{error}"))
 }
 
-fn run(description: &Description) -> Bounds {
-    let (bounds, summary) = study::run(description, Options { threads: Some(2), ..Options::default() }).unwrap();
-    assert_eq!(summary.failure, None);
-    bounds
+fn run(model: &Model) -> Bounds {
+    let result = model.study().threads(2).allow_costly().run().unwrap();
+    assert_eq!(result.failure(), None);
+    result.bounds().clone()
 }
 
-fn pendulum(length: &str, mass: &str, bounds: &str) -> Description {
+fn pendulum(length: &str, mass: &str, bounds: &str) -> Model {
     read(&format!(
         "
 parameters: {{ l: {{ value: 0.5, {length} }}, m: {{ value: 1, {mass} }} }}

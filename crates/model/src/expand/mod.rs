@@ -3,6 +3,7 @@
 //!
 //! Every node keeps its place in the file that it comes from. No names are resolved here (decision 0156).
 
+pub mod asked_outputs;
 pub mod dimensions;
 pub mod fmu;
 pub mod instance;

@@ -56,3 +56,15 @@ impl Override {
         Ok(Self { name: name.to_owned(), text: text.to_owned(), value })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_setting_without_a_value_is_reported_at_its_beginning() {
+        let records = Override::parse("l1").unwrap_err().records();
+        assert_eq!((records[0].message.as_str(), records[0].file.as_str()), ("a parameter is set with `=`", "--set"));
+        assert_eq!((records[0].line, records[0].column), (Some(1), Some(1)));
+    }
+}

@@ -15,7 +15,7 @@ use crate::expand::overrides::Override;
 use crate::expand::parts::{self, Parts, WrittenOut};
 use crate::expand::scenes::{Scenes, Variant};
 use crate::expand::zones::{self, Zone};
-use crate::expand::{fmu as units, mjcf};
+use crate::expand::{asked_outputs, fmu as units, mjcf};
 use crate::grammar::mentions::Notes;
 use crate::grammar::report::Report;
 use crate::keys;
@@ -74,15 +74,31 @@ pub fn is_standard_input(path: &Path) -> bool {
 /// Like [`load`], with the warnings of a model that can be used. The path `-` is standard input, whose model is called
 /// `stdin` if it does not say otherwise, and finds other files from the working directory.
 pub fn read(path: &Path, overrides: &[Override]) -> Reading {
-    read_rooted(path, overrides, None)
+    read_rooted(path, Changes::of(overrides), None)
 }
 
-/// Like [`read`], where the model may also name files of another folder or below.
-pub fn read_rooted(path: &Path, overrides: &[Override], root: Option<&Path>) -> Reading {
+/// What replaces parts of a model's text.
+#[derive(Clone, Copy, Debug)]
+pub struct Changes<'c> {
+    /// Values of parameters.
+    pub overrides: &'c [Override],
+    /// Outputs, by names and formulas; `None` where they are the model's own.
+    pub outputs: Option<&'c [(String, String)]>,
+}
+
+impl<'c> Changes<'c> {
+    /// Of parameters alone.
+    pub fn of(overrides: &'c [Override]) -> Self {
+        Self { overrides, outputs: None }
+    }
+}
+
+/// Like [`read`] with all changes, where the model may also name files of another folder or below.
+pub fn read_rooted(path: &Path, changes: Changes, root: Option<&Path>) -> Reading {
     let from_input = is_standard_input(path);
     let name = if from_input { "stdin".to_owned() } else { shown(path) };
     if let Some(model) = robot_alone(path) {
-        return read_text_of(&name, &model, overrides, root);
+        return read_text_of(&name, &model, changes, root);
     }
     let text = if from_input {
         text_of(std::io::stdin().lock(), TUNING.file_bytes)
@@ -90,7 +106,7 @@ pub fn read_rooted(path: &Path, overrides: &[Override], root: Option<&Path>) -> 
         read_given(path, TUNING.file_bytes)
     };
     match text {
-        Ok(text) => read_text_of(&name, &text, overrides, root),
+        Ok(text) => read_text_of(&name, &text, changes, root),
         Err(error) => {
             let mut diagnostics = Diagnostics::new(name, "");
             diagnostics.push(*error);
@@ -101,19 +117,24 @@ pub fn read_rooted(path: &Path, overrides: &[Override], root: Option<&Path>) -> 
 
 /// Like [`load_str`], with the warnings of a model that can be used.
 pub fn read_str(name: &str, text: &str, overrides: &[Override]) -> Reading {
-    read_text_of(name, text, overrides, None)
+    read_text(name, text, Changes::of(overrides))
 }
 
-fn read_text_of(name: &str, text: &str, overrides: &[Override], root: Option<&Path>) -> Reading {
-    read_from(ModelOrigin::of(name, AllowedFolders::of(Path::new(name), root), None), text, overrides)
+/// Like [`read_str`] with all changes.
+pub fn read_text(name: &str, text: &str, changes: Changes) -> Reading {
+    read_text_of(name, text, changes, None)
+}
+
+fn read_text_of(name: &str, text: &str, changes: Changes, root: Option<&Path>) -> Reading {
+    read_from(ModelOrigin::of(name, AllowedFolders::of(Path::new(name), root), None), text, changes)
 }
 
 /// Reads a model from text that comes from somewhere.
-pub(super) fn read_from(origin: ModelOrigin, text: &str, overrides: &[Override]) -> Reading {
+pub(super) fn read_from(origin: ModelOrigin, text: &str, changes: Changes) -> Reading {
     let name = origin.name;
     let mut diagnostics = Diagnostics::new(name, text);
     let mut placed = Vec::new();
-    for wanted in overrides {
+    for wanted in changes.overrides {
         let start = diagnostics.sources.add("--set", wanted.text.clone());
         match Override::at(&wanted.text, start) {
             Ok(wanted) => {
@@ -163,6 +184,10 @@ pub(super) fn read_from(origin: ModelOrigin, text: &str, overrides: &[Override])
         return Reading { description: None, scenes: Vec::new(), diagnostics };
     }
     let origin = ModelOrigin { chains, zones, ..origin };
+    let root = match changes.outputs {
+        Some(outputs) => asked_outputs::write_out(root, outputs, &mut diagnostics),
+        None => root,
+    };
     let plan = Scenes::read(&mut origin.report(&mut diagnostics), &root);
     let before = diagnostics.len();
     let model = plan.model();

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::load::{ModelOrigin, read_from, read_rooted, robot_alone, shown};
+use super::load::{Changes, ModelOrigin, read_from, read_rooted, robot_alone, shown};
 use super::reading::Reading;
 use crate::grammar::mentions::{Mentions, Notes};
 use crate::syntax::within::{AllowedFolders, OpenTexts};
@@ -19,14 +19,14 @@ pub struct Opened {
 /// Reads a model, some of whose files are open in an editor. Other files are read as [`read_rooted`] reads them.
 pub fn read_open(path: &Path, open: &OpenTexts, root: Option<&Path>) -> Opened {
     let Some(text) = open.get(path) else {
-        return Opened { reading: read_rooted(path, &[], root), mentions: Mentions::default() };
+        return Opened { reading: read_rooted(path, Changes::of(&[]), root), mentions: Mentions::default() };
     };
     let (name, notes) = (shown(path), Notes::default());
     let files = AllowedFolders::of(path, root).with_open(open);
     // The text of the model of a robot is nobody's: names have no places in it.
     let reading = match robot_alone(path) {
-        Some(model) => read_from(ModelOrigin::of(&name, files, None), &model, &[]),
-        None => read_from(ModelOrigin::of(&name, files, Some(&notes)), text, &[]),
+        Some(model) => read_from(ModelOrigin::of(&name, files, None), &model, Changes::of(&[])),
+        None => read_from(ModelOrigin::of(&name, files, Some(&notes)), text, Changes::of(&[])),
     };
     Opened { reading, mentions: notes.into_inner() }
 }

@@ -12,7 +12,7 @@ const SCHEMES: [(&str, SchemeChoice); 3] =
     [("auto", SchemeChoice::Auto), ("hht", SchemeChoice::Hht), ("explicit", SchemeChoice::Explicit)];
 
 /// Levels that can be combined. A fifth gains nothing that rounding leaves.
-const LEVELS: std::ops::RangeInclusive<usize> = 2..=4;
+pub const EXTRAPOLATION_LEVELS: std::ops::RangeInclusive<usize> = 2..=4;
 
 /// Reads `scheme` and `extrapolation`.
 pub(super) fn read(reader: &mut Reader, fields: &Fields) -> Option<(SchemeChoice, Option<usize>)> {
@@ -23,7 +23,7 @@ pub(super) fn read(reader: &mut Reader, fields: &Fields) -> Option<(SchemeChoice
     let levels = match fields.get("extrapolation") {
         None => Some(None),
         Some(node) => match reader.number(node, Dimension::NUMBER)? {
-            number if LEVELS.clone().any(|levels| levels as f64 == number) => Some(Some(number as usize)),
+            number if EXTRAPOLATION_LEVELS.clone().any(|levels| levels as f64 == number) => Some(Some(number as usize)),
             number => {
                 let message = format!("`extrapolation` combines 2, 3 or 4 step lengths, not {number}");
                 let help = "each level halves the steps; 3 levels take 7 times the steps and are of order 4".to_owned();
