@@ -4,8 +4,8 @@ use crate::numerics::{STEP_NODES, step_nodes};
 use crate::simulate::drive::Motion;
 use crate::simulate::explicit::runge_kutta::{RungeKutta, before_event};
 
-/// Takes the steps of a segment, which end at these shares of it: the states at their nodes. Where the segment ends at an
-/// event, `at_event` sees the motion with the rates behind it.
+/// Takes the steps of a segment, which end at these shares of it: the states at their nodes. Where the segment ends at
+/// an event, `at_event` sees the motion with the rates behind it.
 pub(super) fn pass<M: Motion>(
     motion: &mut M,
     state: &[f64],

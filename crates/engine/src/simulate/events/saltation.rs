@@ -110,8 +110,8 @@ impl<'s> EventAdjoints<'s> {
         self.events.iter().find(|(own, _)| *own == step).map(|(_, event)| *event)
     }
 
-    /// Moves a state behind an event back along its motion to before it: a step's end is behind by rounding. The lanes are
-    /// of one sample, so that what holds for the first lane does for all.
+    /// Moves a state behind an event back along its motion to before it: a step's end is behind by rounding. The lanes
+    /// are of one sample, so that what holds for the first lane does for all.
     fn move_before(&mut self, event: Event, time: &mut f64, state: &mut [f64]) {
         let half = state.len() / 2;
         let [mut more, most] = self.back;

@@ -174,8 +174,8 @@ impl<'s> ExplicitAdjoints<'s> {
         total
     }
 
-    /// The stages of a step between two times, given the state at its beginning and the one at its end, if that is known:
-    /// the latter.
+    /// The stages of a step between two times, given the state at its beginning and the one at its end, if that is
+    /// known: the latter.
     fn evaluate(&mut self, state: &[f64], next: Option<Vec<f64>>, [begin, end]: [f64; 2], count: usize) -> Vec<f64> {
         let layout = self.memory.layout();
         let h = end - begin;

@@ -44,8 +44,8 @@ pub(in crate::simulate) fn next_length(step: f64, ratio: f64) -> f64 {
     }
 }
 
-/// Where the stages of a step end whose end is at an event, a little before it: forces may jump there, and stages as late
-/// as the step's end are on either side of it by chance.
+/// Where the stages of a step end whose end is at an event, a little before it: forces may jump there, and stages as
+/// late as the step's end are on either side of it by chance.
 pub(in crate::simulate) fn before_event(begin: f64, end: f64) -> f64 {
     end - TUNING.before_event * (end - begin)
 }
@@ -82,8 +82,8 @@ impl RungeKutta {
         motion.rate(end, &self.next, &mut self.rates[STAGES - 1]);
     }
 
-    /// Goes on along the dense output of the step that was finished, before an event, to a time behind it, and evaluates
-    /// the state there. Shares of the dense output are those of the step before the event.
+    /// Goes on along the dense output of the step that was finished, before an event, to a time behind it, and
+    /// evaluates the state there. Shares of the dense output are those of the step before the event.
     pub fn extrapolate(&mut self, motion: &mut impl Motion, before: f64, end: f64) {
         self.prepare_dense(motion, before);
         let mut next = std::mem::take(&mut self.next);
