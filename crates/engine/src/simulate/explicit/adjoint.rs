@@ -180,8 +180,8 @@ impl<'s> ExplicitAdjoints<'s> {
         let layout = self.memory.layout();
         let h = end - begin;
         let mut next = next;
-        for stage in 0..count {
-            self.times[stage] = begin + TIMES[stage] * h;
+        for (stage, time) in TIMES.iter().enumerate().take(count) {
+            self.times[stage] = begin + time * h;
             let at = if stage == STAGES - 1 {
                 next.get_or_insert_with(|| self.closed(end, self.end_of(state, h))).clone()
             } else {
