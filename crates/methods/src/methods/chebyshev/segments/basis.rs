@@ -84,20 +84,43 @@ impl Powers {
 }
 
 impl Level {
-    /// Through the zeros of margins that are given at samples.
+    /// Through the zeros of margins that are given at samples. Where one side's are no continuation of the other's, no
+    /// polynomial has both: then samples say where it is by shares of the largest on their side, or by their sides
+    /// alone.
     pub fn through(samples: &[(&[f64], f64)]) -> Option<Self> {
-        let k = samples.first()?.0.len();
-        let size = largest(samples.iter().map(|(_, margin)| *margin));
-        let weight = |margin: f64| TUNING.near_surface / (margin.abs() / size + TUNING.near_surface);
-        let weights: Vec<f64> = samples.iter().map(|(_, margin)| weight(*margin)).collect();
         let margins: Vec<f64> = samples.iter().map(|(_, margin)| *margin).collect();
+        let own = Self::of_values(samples, &margins)?;
+        let size = |sign: f64| margins.iter().map(|margin| sign * margin).fold(0.0, f64::max);
+        let sizes = [-1.0, 1.0].map(size);
+        let shares: Vec<f64> = margins.iter().map(|margin| margin / sizes[usize::from(*margin > 0.0)]).collect();
+        // Samples on the wrong side that are not beside the surface.
+        let misplaced = |level: &Self| {
+            let is_off = |((xi, _), share): (&(&[f64], f64), &f64)| {
+                share.abs() > TUNING.near_surface && level.at(xi) * share < 0.0
+            };
+            samples.iter().zip(&shares).filter(|own| is_off(*own)).count()
+        };
+        if misplaced(&own) == 0 {
+            return Some(own);
+        }
+        let sides: Vec<f64> = margins.iter().map(|margin| margin.signum()).collect();
+        let others = [&shares, &sides].into_iter().filter_map(|values| Self::of_values(samples, values));
+        std::iter::once(own).chain(others).min_by_key(misplaced)
+    }
+
+    /// Of the degree at which samples that are left out are met best.
+    fn of_values(samples: &[(&[f64], f64)], values: &[f64]) -> Option<Self> {
+        let k = samples.first()?.0.len();
+        let size = largest(values.iter().copied());
+        let weight = |value: &f64| TUNING.near_surface / (value.abs() / size + TUNING.near_surface);
+        let weights: Vec<f64> = values.iter().map(weight).collect();
         let of_degree = |degree: usize| {
             let powers = Powers::up_to(degree, k);
             let terms = values_of(samples.iter().map(|(xi, _)| *xi), |xi, into| powers.values(xi, into));
             if samples.len() as f64 <= TUNING.samples_a_term * powers.0.len() as f64 {
                 return None;
             }
-            let (coefficients, left_out) = LeastSquares::new(&terms, weights.clone())?.fit(&margins)?;
+            let (coefficients, left_out) = LeastSquares::new(&terms, weights.clone())?.fit(values)?;
             let error = largest(left_out.iter().zip(&weights).map(|(error, weight)| error * weight));
             Some(Self { powers, coefficients, error })
         };
@@ -287,6 +310,19 @@ mod tests {
             assert!(level.at(&on).abs() < level.error.max(1e-3), "{} at {angle}", level.at(&on));
         }
         assert!(level.error < 0.02, "{}", level.error);
+    }
+
+    /// Margins that are flat and wavy on one side, and steep on the other: no polynomial has both.
+    #[test]
+    fn a_surface_parts_samples_whatever_their_margins_are() {
+        let margin = |x: f64| if x < 0.05 { 1e-3 * (1.2 + (9.0 * x).sin()) } else { 0.05 - x - 0.01 };
+        let points = crate::numerics::spread(1, 60);
+        let samples: Vec<(&[f64], f64)> = points.iter().map(|xi| (&xi[..], margin(xi[0]))).collect();
+        let level = Level::through(&samples).unwrap();
+        assert!(Level::of_values(&samples, &samples.iter().map(|own| own.1).collect::<Vec<_>>()).unwrap().error > 1e-3);
+        for (xi, margin) in samples.iter().filter(|(_, margin)| !(0.0..2e-4).contains(margin)) {
+            assert!(level.at(xi) * margin > 0.0, "{} at {xi:?}, not {margin}", level.at(xi));
+        }
     }
 
     #[test]
