@@ -93,14 +93,14 @@ pub fn segment_jets(
             motion.length[0] += tail;
         }
         let ends_at_event = event.is_some();
-        let mut nodes = pass(&mut motion, &state, steps, ends_at_event);
+        let mut nodes = nodes::pass(&mut motion, &state, steps, ends_at_event);
         let mut is_solved = event.is_none();
         let mut is_known = is_solved;
         for _ in 0..TUNING.corrections_of_instant {
             let Some(event) = event.filter(|_| !is_solved) else { break };
             let change = watch.change(&motion.closure, event.switch, TUNING.beyond_event * duration);
             motion.length.iter_mut().zip(&change).for_each(|(length, change)| *length += change);
-            nodes = pass(&mut motion, &state, steps, ends_at_event);
+            nodes = nodes::pass(&mut motion, &state, steps, ends_at_event);
             let (first, others) = (change[0].abs(), change[1..].iter().fold(0.0, |most: f64, own| most.max(own.abs())));
             if first.is_nan() {
                 return Ok(None);
@@ -121,16 +121,6 @@ pub fn segment_jets(
     }
     let is_known = motions.nodes.iter().flatten().flatten().all(|value| value.is_finite());
     Ok(is_known.then_some((number, motions)))
-}
-
-/// The states at the nodes of a segment's steps; where it ends at an event, the motion keeps the rates there, which
-/// switches see.
-fn pass(motion: &mut StretchedJet, state: &[f64], steps: &[f64], ends_at_event: bool) -> Vec<Vec<f64>> {
-    let nodes = nodes::pass(motion, state, steps, ends_at_event.then_some(|_: &StretchedJet| ()));
-    if let Some(last) = nodes.last().filter(|_| ends_at_event) {
-        motion.rate(1.0, last, &mut vec![0.0; state.len()]);
-    }
-    nodes
 }
 
 /// Values of switches in jets.

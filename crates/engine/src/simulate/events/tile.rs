@@ -250,8 +250,11 @@ impl<'s> SegmentTile<'s> {
     /// nodes.
     fn pass(&mut self, steps: &[f64], ends_at_event: bool) -> Vec<Vec<f64>> {
         let Self { motion, watch, state, .. } = self;
-        let at_event = |motion: &Stretched| watch.end(motion.closure.tile());
-        nodes::pass(motion, state, steps, ends_at_event.then_some(at_event))
+        let nodes = nodes::pass(motion, state, steps, ends_at_event);
+        if ends_at_event {
+            watch.end(motion.closure.tile());
+        }
+        nodes
     }
 }
 

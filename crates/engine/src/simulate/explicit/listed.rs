@@ -72,11 +72,11 @@ impl Stepping for ExplicitSteps<'_> {
                 self.run = RungeKutta::start(&mut self.motion, before.unwrap_or(0.0), state);
             }
         }
-        let inner = self.inner(step);
-        self.run.attempt(&mut self.motion, inner);
-        self.run.finish(&mut self.motion, inner);
-        if inner < end {
-            self.run.extrapolate(&mut self.motion, inner, end);
+        if self.at_events.contains(&step) {
+            self.run.step_to_event(&mut self.motion, end);
+        } else {
+            self.run.attempt(&mut self.motion, end);
+            self.run.finish(&mut self.motion, end);
         }
         let unchanged = Instants::of(self.simulator).contain(end).then(|| self.run.next.clone());
         self.run.accept(&mut self.motion, end);

@@ -82,6 +82,16 @@ impl RungeKutta {
         motion.rate(end, &self.next, &mut self.rates[STAGES - 1]);
     }
 
+    /// Takes a step that ends at an event. Returns when its stages end: shares of its dense output are those of the
+    /// time up to there.
+    pub fn step_to_event(&mut self, motion: &mut impl Motion, end: f64) -> f64 {
+        let before = before_event(self.time, end);
+        self.attempt(motion, before);
+        self.finish(motion, before);
+        self.extrapolate(motion, before, end);
+        before
+    }
+
     /// Goes on along the dense output of the step that was finished, before an event, to a time behind it, and
     /// evaluates the state there. Shares of the dense output are those of the step before the event.
     pub fn extrapolate(&mut self, motion: &mut impl Motion, before: f64, end: f64) {

@@ -150,6 +150,13 @@ impl Level {
         (-self.at(xi)).max(0.0).sqrt()
     }
 
+    /// The axis along which it changes most, over some samples.
+    pub fn steepest(&self, samples: &[Vec<f64>]) -> usize {
+        let slope = |axis: usize| -> f64 { samples.iter().map(|xi| self.slope(xi, axis).abs()).sum() };
+        let slopes = (0..samples.first().map_or(0, Vec::len)).map(slope).enumerate();
+        slopes.max_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |(axis, _)| axis)
+    }
+
     /// Its slope along an axis.
     fn slope(&self, xi: &[f64], axis: usize) -> f64 {
         let mut beside = xi.to_vec();
@@ -186,11 +193,8 @@ impl Fitted {
         Self::about(degree, depths, None, samples)
     }
 
-    /// With the root of a depth in place of the ξ along which it changes most.
-    pub fn across(degree: usize, depth: &Level, samples: &[Vec<f64>]) -> Self {
-        let k = samples.first().map_or(0, Vec::len);
-        let slope = |axis: usize| -> f64 { samples.iter().map(|xi| depth.slope(xi, axis).abs()).sum() };
-        let axis = (0..k).max_by(|&a, &b| slope(a).total_cmp(&slope(b))).unwrap_or(0);
+    /// With the root of a depth in place of the ξ along an axis.
+    pub fn across(degree: usize, depth: &Level, axis: usize, samples: &[Vec<f64>]) -> Self {
         Self::about(degree, &[], Some((axis, depth.clone())), samples)
     }
 
@@ -383,7 +387,7 @@ mod tests {
             let value = |terms: Vec<f64>| -> f64 { terms.iter().zip(&own).map(|(term, own)| term * own).sum() };
             largest(found.map(value).zip(&others).map(|(value, xi)| value - of(xi)))
         };
-        let across = worst(Fitted::across(5, &level, &xi));
+        let across = worst(Fitted::across(5, &level, level.steepest(&xi), &xi));
         let along = worst(Fitted::new(4, std::slice::from_ref(&level), &xi));
         assert!(across < 2e-3 && across < 0.2 * along, "{across} {along}");
     }

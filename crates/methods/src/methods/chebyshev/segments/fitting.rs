@@ -122,9 +122,11 @@ impl Fitting<'_> {
             let misses = times.chain(ends).map(left_out).fold(0.0, f64::max);
             Some((misses, basis, squares))
         };
+        let axes: Vec<usize> = depths.iter().map(|depth| depth.steepest(&xi)).collect();
         let of_degree = |degree: usize| {
             let plain = [&[][..], &depths].map(|depths| Fitted::new(degree, depths, &xi));
-            let across = depths.iter().filter(|_| degree > 0).map(|depth| Fitted::across(degree, depth, &xi));
+            let across = depths.iter().zip(&axes).filter(|_| degree > 0);
+            let across = across.map(|(depth, &axis)| Fitted::across(degree, depth, axis, &xi));
             plain.into_iter().chain(across).map(|fitted| (degree, fitted)).collect::<Vec<_>>()
         };
         let tried = (0..=self.degree).flat_map(of_degree).filter_map(of_terms);
