@@ -18,7 +18,7 @@ use symdiff::CWriter;
 
 use self::method::Method;
 use crate::numerics::Sample;
-use crate::simulate::{Integration, Observed, Schedule, SimulationError, Simulator, Steps, integrator};
+use crate::simulate::{Observed, Schedule, SimulationError, Simulator, Steps, integrator};
 use tuning::TUNING;
 
 pub use fmi::FmiVersion;
@@ -104,10 +104,7 @@ pub fn c_code(simulator: &Simulator, steps: Steps, request: CodeRequest) -> Resu
     let (system, schedule) = (&simulator.system, steps.schedule);
     let refused = [
         (system.analysis.visits(), "its analysis has no motion; without the key `analysis` it has one"),
-        (
-            schedule.integration == Integration::Segments,
-            "its steps are cut at events that samples share; give `scheme: hht`",
-        ),
+        (schedule.integration.is_cut(), "its steps are cut at events that samples share; give `scheme: hht`"),
     ];
     if let Some((_, why)) = refused.into_iter().find(|(is_so, _)| *is_so) {
         return Err(NoCode::NotWritten(why));

@@ -48,7 +48,7 @@ pub use layout::Layout;
 pub use nearest::OpenStart;
 pub use powers::{OF_EFFECT, OF_WHOLE, observing_powers};
 pub use program::{PivotSample, Program, WatchedPivots};
-pub use scheme::{Coefficients, Scheme};
+pub use scheme::{Coefficients, ConstraintLevel, Scheme};
 pub use sparse_lu::NoFactors;
 pub use start::{compile_nearest_start, compile_start};
 pub use start_equations::Residual;

@@ -32,7 +32,9 @@ pub fn integrator<'s>(
             let of_level = |share: f64| EnsembleRun::start(simulator, samples, share * first_step);
             Box::new(Extrapolated::of(simulator, levels, closures, of_level)?)
         }
-        Integration::Explicit | Integration::Segments => Box::new(ExplicitRun::start(simulator, samples)?),
+        Integration::Explicit | Integration::Segments | Integration::SchemeSegments { .. } => {
+            Box::new(ExplicitRun::start(simulator, samples)?)
+        }
     })
 }
 
@@ -72,6 +74,8 @@ pub fn jet_integrator<'s>(
             let of_level = |share: f64| JetRun::start(simulator, space, about, share * first_step);
             Box::new(Extrapolated::of(simulator, levels, closures, of_level)?)
         }
-        Integration::Explicit | Integration::Segments => Box::new(ExplicitJets::start(simulator, space, about)?),
+        Integration::Explicit | Integration::Segments | Integration::SchemeSegments { .. } => {
+            Box::new(ExplicitJets::start(simulator, space, about)?)
+        }
     })
 }

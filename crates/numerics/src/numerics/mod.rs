@@ -98,7 +98,9 @@ pub use samples::{TensorGrid, corners, corners_by_slopes, spread, step_validatio
 pub use scan::ScanBounds;
 pub use scan_grid::ScanGrid;
 pub use search::{ExtremeSearch, Extremes};
-pub use segments::{BoundaryMargins, CutMotions, STEP_NODES, SegmentMotions, step_nodes, step_weights};
+pub use segments::{
+    BoundaryMargins, CutMotions, STEP_NODES, SegmentMotions, equispaced_weights, step_nodes, step_weights,
+};
 pub use separation::Separation;
 pub use sobol::SobolDecomposition;
 pub use sparse_basis::{SparseBasis, SparseWork};

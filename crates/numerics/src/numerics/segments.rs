@@ -155,9 +155,37 @@ pub fn step_weights(ends: &[f64], share: f64) -> (usize, [f64; STEP_NODES]) {
     (step, weights)
 }
 
+/// Weights of values at `N` points that divide a step into equal parts, at a share of it; a share beyond the step's
+/// ends is extrapolated.
+pub fn equispaced_weights<const N: usize>(share: f64) -> [f64; N] {
+    let local = share * (N - 1) as f64;
+    if local.fract() == 0.0 && (0.0..N as f64).contains(&local) {
+        return std::array::from_fn(|point| f64::from(u8::from(point as f64 == local)));
+    }
+    // Barycentric weights of equispaced points: binomial coefficients with alternating signs.
+    let mut binomial = -1.0;
+    let mut weights: [f64; N] = std::array::from_fn(|point| {
+        binomial *= if point == 0 { -1.0 } else { -((N - point) as f64) / point as f64 };
+        binomial / (local - point as f64)
+    });
+    let sum: f64 = weights.iter().sum();
+    weights.iter_mut().for_each(|weight| *weight /= sum);
+    weights
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn equispaced_points_meet_polynomials() {
+        let f = |s: f64| 1.0 + s * (2.0 - s * s * s) + s.powi(7);
+        for share in [0.0, 0.1, 1.0 / 7.0, 0.5, 6.0 / 7.0, 1.0, 1.001] {
+            let weights: [f64; STEP_NODES] = equispaced_weights(share);
+            let value: f64 = weights.iter().enumerate().map(|(point, weight)| weight * f(point as f64 / 7.0)).sum();
+            assert!((value - f(share)).abs() < 1e-12, "{share}: {value}");
+        }
+    }
 
     #[test]
     fn polynomials_of_degree_seven_are_met() {

@@ -182,7 +182,9 @@ impl TileOf<'_> {
         let (by_parameters, kernel) = match self.schedule.integration {
             Integration::Plain => self.of_scheme(1, &mut values, inputs.as_ref()),
             Integration::Extrapolated { levels } => self.of_scheme(levels, &mut values, inputs.as_ref()),
-            Integration::Explicit | Integration::Segments => self.of_explicit(&mut values, inputs.as_ref()),
+            Integration::Explicit | Integration::Segments | Integration::SchemeSegments { .. } => {
+                self.of_explicit(&mut values, inputs.as_ref())
+            }
         }?;
         let of_lane = |(lane, terms): (usize, Vec<f64>)| {
             let value = self.lanes[lane].terms.iter().zip(&terms).map(|(term, value)| term.weight * value).sum();

@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::simulate::events::STEPS_OF_SCHEME;
+
 /// How the steps of a schedule are taken.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Integration {
@@ -18,6 +20,11 @@ pub enum Integration {
     Explicit,
     /// By the same method in segments that end at events.
     Segments,
+    /// By the scheme in segments that end at events, on so many levels.
+    SchemeSegments {
+        /// 1 to 4; 1 is the scheme itself.
+        levels: usize,
+    },
 }
 
 impl Integration {
@@ -31,14 +38,26 @@ impl Integration {
         match self {
             Self::Plain | Self::Explicit | Self::Segments => 1,
             Self::Extrapolated { levels } => (1 << levels) - 1,
+            Self::SchemeSegments { levels } => STEPS_OF_SCHEME * ((1 << levels) - 1),
         }
+    }
+
+    /// Whether motions are cut at events.
+    pub fn is_cut(self) -> bool {
+        matches!(self, Self::Segments | Self::SchemeSegments { .. })
+    }
+
+    /// Whether a name is that of one by which motions are cut at events.
+    pub fn is_cut_by_name(name: &str) -> bool {
+        let all = std::iter::once(Self::Segments).chain((1..=4).map(|levels| Self::SchemeSegments { levels }));
+        all.filter_map(Self::name).any(|own| own == name)
     }
 
     /// The order at which the error falls with the steps where the motion is smooth.
     pub fn order(self) -> usize {
         match self {
             Self::Plain => 2,
-            Self::Extrapolated { levels } => levels + 1,
+            Self::Extrapolated { levels } | Self::SchemeSegments { levels } => levels + 1,
             Self::Explicit | Self::Segments => 8,
         }
     }
@@ -50,6 +69,10 @@ impl Integration {
             Self::Extrapolated { levels } => Some(format!("HHT-I3 extrapolated over {levels} levels")),
             Self::Explicit => Some("Dormand–Prince 8(5,3), explicit".to_owned()),
             Self::Segments => Some("Dormand–Prince 8(5,3), explicit, between events".to_owned()),
+            Self::SchemeSegments { levels: 1 } => Some("HHT-I3 between events".to_owned()),
+            Self::SchemeSegments { levels } => {
+                Some(format!("HHT-I3 extrapolated over {levels} levels, between events"))
+            }
         }
     }
 }

@@ -7,7 +7,7 @@ use super::integration::Integration;
 use serde::{Deserialize, Serialize};
 
 use super::tuning::TUNING;
-use crate::simulate::events::segments::Segments;
+use crate::simulate::events::segments::{SegmentMethod, Segments};
 
 /// Rows of output, and the steps that lead from row to row.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -94,8 +94,12 @@ impl Schedule {
 
     /// Steps between the events that all samples meet.
     pub fn segmented(duration: f64, output_step: f64, segments: Segments) -> Self {
+        let integration = match segments.method {
+            SegmentMethod::Explicit => Integration::Segments,
+            SegmentMethod::Scheme { levels } => Integration::SchemeSegments { levels },
+        };
         let (rows, steps) = (rows(duration, output_step), StepList::Segmented(segments));
-        Self { output_step, rows, end: duration, steps, integration: Integration::Segments }
+        Self { output_step, rows, end: duration, steps, integration }
     }
 
     /// The events between which steps are taken, with these, where they are.

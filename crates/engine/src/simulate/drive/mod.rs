@@ -4,7 +4,8 @@
 //! - `row_tile`: lanes that advance together, which each scheme has its own of;
 //! - `tiled_run`: tiles on all cores, row by row;
 //! - `extrapolated`: the same on several levels of steps, combined;
-//! - `motion`: rates of a state, and rows that are closed from it, in lanes or in coefficients;
+//! - `motion`: rates of a state, and rows that are closed from it, in lanes or in coefficients, and `motion_steps`:
+//!   steps of it;
 //! - `observed`: values that a row records, and samples that stop;
 //! - `reduction`: outputs accumulated from step to step to one number;
 //! - `tiling`: how samples are divided among tiles.
@@ -12,6 +13,7 @@
 mod extrapolated;
 mod integrator;
 mod motion;
+mod motion_steps;
 mod observed;
 pub(super) mod reduction;
 mod row_tile;
@@ -23,6 +25,7 @@ pub(crate) use extrapolated::weights;
 pub(in crate::simulate) use extrapolated::{ClosedRows, Extrapolated};
 pub use integrator::Integrator;
 pub(in crate::simulate) use motion::{Motion, RowState};
+pub(in crate::simulate) use motion_steps::MotionSteps;
 pub use observed::{Observed, Stop};
 pub(in crate::simulate) use observed::{forget_lost, lost_lanes};
 pub(in crate::simulate) use reduction::Accumulator;

@@ -31,6 +31,11 @@ impl Followed {
         followed
     }
 
+    /// Length of a segment of those up to a time, s.
+    pub fn length(&self, segment: usize, end: f64) -> f64 {
+        self.events.get(segment).map_or(end, |(_, time)| *time) - self.begin(segment)
+    }
+
     /// Whether another motion meets the same events up to a time.
     pub fn agrees(&self, other: &Self, end: f64) -> bool {
         let at = |followed: &Self, index: usize| followed.events.get(index).copied();

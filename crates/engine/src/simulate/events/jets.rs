@@ -10,13 +10,14 @@ use symdiff::jet::JetSpace;
 use super::followed::Spelled;
 use super::nodes;
 use super::path::Path;
-use super::segments::Segments;
+use super::segments::{SegmentMethod, Segments};
 use super::tuning::TUNING;
 use crate::compile::{SwitchProgram, Tapes};
 use crate::numerics::{Sample, SegmentMotions};
 use crate::simulate::drive::Motion;
 use crate::simulate::ensemble::{JetBox, JetClosure};
 use crate::simulate::error::SimulationError;
+use crate::simulate::explicit::runge_kutta::RungeKutta;
 use crate::simulate::simulator::Simulator;
 
 /// Segments of a jet on a time from 0 to 1.
@@ -68,9 +69,10 @@ pub fn segment_jets(
     segments: &Segments,
     duration: f64,
 ) -> Result<Option<(usize, SegmentMotions)>, SimulationError> {
-    let Some(program) = simulator.switches() else { return Ok(None) };
+    let is_explicit = segments.method == SegmentMethod::Explicit;
+    let Some(program) = simulator.switches().filter(|_| is_explicit) else { return Ok(None) };
     let sample: Sample = about.center.iter().copied().collect();
-    let spelled = Spelled::by(Path::start(simulator, program, &sample, duration, segments.tolerance)?, segments);
+    let spelled = Spelled::by(Path::start(simulator, program, &sample, duration, segments.following())?, segments);
     let Some(number) = spelled.word else { return Ok(None) };
     let word = &segments.words[number];
     let start = simulator.assemble(1, 0.0, |_| sample.clone())?;
@@ -79,6 +81,7 @@ pub fn segment_jets(
     let mut watch = JetWatch::new(program, space, &closure);
     let zero = vec![0.0; space.len()];
     let mut motion = StretchedJet { closure, space, begin: zero.clone(), length: zero.clone(), product: zero.clone() };
+    let mut run = RungeKutta::start(&mut motion, 0.0, state.clone());
     let mut motions = SegmentMotions {
         samples: (0..space.len()).collect(),
         steps: word.steps.clone(),
@@ -93,14 +96,14 @@ pub fn segment_jets(
             motion.length[0] += tail;
         }
         let ends_at_event = event.is_some();
-        let mut nodes = nodes::pass(&mut motion, &state, steps, ends_at_event);
+        let mut nodes = nodes::pass(&mut run, &mut motion, &state, steps, ends_at_event);
         let mut is_solved = event.is_none();
         let mut is_known = is_solved;
         for _ in 0..TUNING.corrections_of_instant {
             let Some(event) = event.filter(|_| !is_solved) else { break };
             let change = watch.change(&motion.closure, event.switch, TUNING.beyond_event * duration);
             motion.length.iter_mut().zip(&change).for_each(|(length, change)| *length += change);
-            nodes = nodes::pass(&mut motion, &state, steps, ends_at_event);
+            nodes = nodes::pass(&mut run, &mut motion, &state, steps, ends_at_event);
             let (first, others) = (change[0].abs(), change[1..].iter().fold(0.0, |most: f64, own| most.max(own.abs())));
             if first.is_nan() {
                 return Ok(None);

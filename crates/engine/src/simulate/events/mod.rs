@@ -5,7 +5,8 @@
 //!
 //! - `locate`: where a function of the time changes its sign within a step;
 //! - `segments`: the words of a box, the steps between their events, and the boundaries between words;
-//! - `path`: one sample by the explicit method, whose steps end at events, and `followed`: its word;
+//! - `path`: one sample, whose steps end at events, and `followed`: its word;
+//! - `scheme_steps`: steps of HHT-I3 for motions that are stiff;
 //! - `word`: the words of some samples, and `boundary`: the surfaces between them;
 //! - `stretched`: segments on a time from 0 to 1, `nodes`: states there, and `tile`: samples on it in lockstep;
 //! - `run`: an ensemble, `rows`: its rows, and `jets`: a jet;
@@ -20,6 +21,7 @@ mod path;
 mod rows;
 mod run;
 mod saltation;
+mod scheme_steps;
 pub(in crate::simulate) mod segments;
 mod stretched;
 mod tile;
@@ -29,5 +31,6 @@ mod word;
 pub use jets::segment_jets;
 pub use run::SegmentRun;
 pub(in crate::simulate) use saltation::{EventAdjoints, EventSteps};
-pub use segments::{Boundary, WordsEnd};
+pub(in crate::simulate) use scheme_steps::STEPS_OF_SCHEME;
+pub use segments::{Boundary, Following, SegmentMethod, WordsEnd};
 pub use word::segments_of;

@@ -1,18 +1,20 @@
-//! The motion of one sample by the explicit method, with steps of its own that end at events.
+//! The motion of one sample, with steps of its own that end at events.
 //!
 //! The instant of an event is solved to rounding: the step that crosses it is taken again with its length as the
 //! unknown, by Newton's method on the switch's value and rate at the step's end. It ends beyond the event by so little
 //! that what follows begins on the event's other side.
 
-use super::segments::Event;
+use super::scheme_steps::SchemeSteps;
+use super::segments::{Event, Following, SegmentMethod};
 use super::tuning::TUNING;
 use crate::compile::SwitchProgram;
 use crate::numerics::Sample;
 use crate::simulate::control::SwitchWatch;
+use crate::simulate::drive::MotionSteps;
 use crate::simulate::ensemble::RowClosure;
 use crate::simulate::error::SimulationError;
 use crate::simulate::explicit::movement::Movement;
-use crate::simulate::explicit::runge_kutta::{RungeKutta, before_event, next_length};
+use crate::simulate::explicit::runge_kutta::{RungeKutta, before_event};
 use crate::simulate::features::{FeatureWork, Features, Passage};
 use crate::simulate::simulator::Simulator;
 
@@ -34,7 +36,7 @@ pub struct PathStep {
 #[derive(Debug)]
 pub struct Path<'s> {
     closure: RowClosure<'s>,
-    run: RungeKutta,
+    run: Box<dyn MotionSteps<RowClosure<'s>> + 's>,
     watch: SwitchWatch<'s>,
     movement: Movement,
     start: Vec<f64>,
@@ -51,10 +53,11 @@ pub struct Path<'s> {
     event: f64,
     tries: usize,
     most: usize,
+    method: SegmentMethod,
 }
 
 impl<'s> Path<'s> {
-    /// At the start of a sample; each step errs by at most `tolerance` of how far the motion has gone.
+    /// At the start of a sample;
     ///
     /// # Errors
     /// Where the sample cannot be assembled.
@@ -63,13 +66,20 @@ impl<'s> Path<'s> {
         program: &'s SwitchProgram,
         sample: &Sample,
         duration: f64,
-        tolerance: f64,
+        Following { tolerance, method }: Following,
     ) -> Result<Self, SimulationError> {
         let assembled = simulator.assemble(1, 0.0, |_| sample.clone())?;
         let mut closure = RowClosure::new(simulator, &assembled)?;
         let layout = &simulator.start.layout;
         let start = assembled.values()[layout.q.start..layout.v.end].to_vec();
-        let run = RungeKutta::start(&mut closure, 0.0, start.clone());
+        let run: Box<dyn MotionSteps<RowClosure>> = match method {
+            SegmentMethod::Explicit => Box::new(RungeKutta::start(&mut closure, 0.0, start.clone())),
+            SegmentMethod::Scheme { .. } => {
+                let mut run = SchemeSteps::new(simulator, &assembled, TUNING.levels_of_paths);
+                run.begin(&mut closure, 0.0, &start);
+                Box::new(run)
+            }
+        };
         let mut watch = SwitchWatch::new(program, closure.tile());
         watch.begin(closure.tile());
         let sizes = (0..program.switches.len()).map(|switch| watch.at_beginning(switch, 0)[0].abs()).collect();
@@ -89,7 +99,11 @@ impl<'s> Path<'s> {
             h: TUNING.first_step * duration,
             event: 0.0,
             tries: 0,
-            most: TUNING.most_steps,
+            method,
+            most: match method {
+                SegmentMethod::Explicit => TUNING.most_steps,
+                SegmentMethod::Scheme { .. } => TUNING.most_steps_of_scheme,
+            },
         })
     }
 
@@ -104,7 +118,7 @@ impl<'s> Path<'s> {
     /// # Errors
     /// Where no step can be taken.
     pub fn step(&mut self, goal: f64) -> Result<PathStep, Lost> {
-        let begin = self.run.time;
+        let begin = self.run.time();
         // The length of a step that a crossing cut short, and the switch that crosses.
         let mut cut: Option<(f64, usize)> = None;
         loop {
@@ -146,7 +160,7 @@ impl<'s> Path<'s> {
             let passes_over = ratio <= 1.0 && self.passes_over(begin, end);
             if ratio > 1.0 || passes_over {
                 self.closure.forget();
-                self.h = if passes_over { step * TUNING.passing_share } else { next_length(step, ratio) };
+                self.h = if passes_over { step * TUNING.passing_share } else { self.run.next_length(step, ratio) };
                 cut = None;
                 continue;
             }
@@ -154,7 +168,7 @@ impl<'s> Path<'s> {
                 Some((uncut, _)) if event.is_some() => uncut,
                 // A step cut short at the goal is no reason against the longer one.
                 _ if end == goal && step < self.h => self.h,
-                _ => next_length(step, ratio),
+                _ => self.run.next_length(step, ratio),
             };
             return Ok(PathStep { begin, end, event });
         }
@@ -200,16 +214,14 @@ impl<'s> Path<'s> {
     fn attempt(&mut self, end: f64) -> f64 {
         let Self { run, closure, watch, .. } = self;
         run.attempt(closure, end);
-        run.finish(closure, end);
         watch.end(closure.tile());
         self.error(end)
     }
 
     /// The same of a step that ends at an event, or where one is sought.
     fn attempt_to_event(&mut self, end: f64) -> f64 {
-        let before = before_event(self.run.time, end);
+        let before = before_event(self.run.time(), end);
         self.run.attempt(&mut self.closure, before);
-        self.run.finish(&mut self.closure, before);
         let ratio = self.error(before);
         self.run.extrapolate(&mut self.closure, before, end);
         self.watch.end(self.closure.tile());
@@ -218,8 +230,8 @@ impl<'s> Path<'s> {
 
     /// Error over the tolerance of the step that was finished.
     fn error(&self, end: f64) -> f64 {
-        let sizes = self.movement.clone().reaching(&self.start, &self.run.next, 1).sizes();
-        self.run.errors(end, &sizes, self.tolerance, 1)[0].ratio
+        let sizes = self.movement.clone().reaching(&self.start, self.run.next(), 1).sizes();
+        self.run.ratio(end, &sizes, self.tolerance)
     }
 
     /// Tries the step that was taken once more.
@@ -233,7 +245,7 @@ impl<'s> Path<'s> {
     /// Whether the step that was tried passes over what a force does in space.
     fn passes_over(&mut self, begin: f64, end: f64) -> bool {
         let Some(features) = self.features else { return false };
-        let states = [&self.run.state[..], &self.run.next[..]];
+        let states = [self.run.state(), self.run.next()];
         let passage = Passage { end, h: end - begin, parameters: &self.parameters, states, width: 1, lane: 0 };
         features.are_hidden(passage, &mut self.work)
     }
@@ -318,7 +330,7 @@ impl<'s> Path<'s> {
 
     /// Whether it can be followed beyond a time.
     pub fn reaches(mut self, time: f64) -> bool {
-        while self.run.time < time {
+        while self.run.time() < time {
             let Ok(step) = self.step(f64::INFINITY) else { return false };
             self.go_on(step);
         }
@@ -346,9 +358,14 @@ impl<'s> Path<'s> {
         }
         if step.event.is_some() {
             self.event = step.end;
-            self.most = self.most.max(TUNING.most_steps_with_events);
+            self.most = self.most.max(match self.method {
+                SegmentMethod::Explicit => TUNING.most_steps_with_events,
+                SegmentMethod::Scheme { .. } => TUNING.most_steps_of_scheme,
+            });
+            self.run.accept_event(&mut self.closure, step.end);
+        } else {
+            self.run.accept(&mut self.closure, step.end);
         }
-        self.run.accept(&mut self.closure, step.end);
-        self.movement = self.movement.clone().reaching(&self.start, &self.run.state, 1);
+        self.movement = self.movement.clone().reaching(&self.start, self.run.state(), 1);
     }
 }

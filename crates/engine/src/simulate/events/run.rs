@@ -74,7 +74,7 @@ impl<'s> SegmentRun<'s> {
     }
 
     fn path(&self, program: &'s SwitchProgram, sample: &Sample) -> Result<Path<'s>, SimulationError> {
-        Path::start(self.simulator, program, sample, self.duration, self.segments.tolerance)
+        Path::start(self.simulator, program, sample, self.duration, self.segments.following())
     }
 
     /// The motions in their segments, to the end, but those of which an instant cannot be solved for; `None` where

@@ -39,7 +39,7 @@ impl EventSteps {
         duration: f64,
     ) -> Result<Self, SimulationError> {
         let Some(program) = simulator.switches() else { return Ok(Self::default()) };
-        let path = Path::start(simulator, program, sample, duration, segments.tolerance)?.behind_words();
+        let path = Path::start(simulator, program, sample, duration, segments.following())?.behind_words();
         let Followed { events, steps, .. } = Followed::to(path, until);
         let mut own = Self::default();
         for (segment, ends) in steps.into_iter().enumerate() {

@@ -60,6 +60,28 @@ pub enum WordsEnd {
     MoreEvents,
 }
 
+/// How motions between events are integrated.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum SegmentMethod {
+    /// By the explicit method.
+    #[default]
+    Explicit,
+    /// By the scheme, where forces are stiff or the model asks for it.
+    Scheme {
+        /// Levels of extrapolation; 1 is the scheme itself.
+        levels: usize,
+    },
+}
+
+/// How a sample is followed from event to event.
+#[derive(Clone, Copy, Debug)]
+pub struct Following {
+    /// Largest error of a step, as a share of how far the motion has gone.
+    pub tolerance: f64,
+    /// How it is integrated.
+    pub method: SegmentMethod,
+}
+
 /// The words of a box.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Segments {
@@ -73,9 +95,17 @@ pub struct Segments {
     /// How closely events are located: a motion that is followed alone errs by this share of how far it has gone, in
     /// each of its steps.
     pub tolerance: f64,
+    /// How motions are integrated.
+    #[serde(default)]
+    pub method: SegmentMethod,
 }
 
 impl Segments {
+    /// How their samples are followed.
+    pub fn following(&self) -> Following {
+        Following { tolerance: self.tolerance, method: self.method }
+    }
+
     /// Number of steps of the word that has most.
     pub fn count(&self) -> usize {
         self.words.iter().map(|word| word.steps.iter().map(Vec::len).sum()).max().unwrap_or(0)
@@ -84,13 +114,16 @@ impl Segments {
     /// The same with so many steps instead of those of each segment.
     #[must_use]
     pub fn with_steps(&self, others: impl Fn(usize) -> usize) -> Self {
-        let of_segment = |ends: &Vec<f64>| {
-            let times: Vec<f64> = std::iter::once(0.0).chain(ends.iter().copied()).collect();
-            divided(&times, others(ends.len())).collect()
-        };
+        let of_segment = |ends: &Vec<f64>| shares_divided(ends, others(ends.len()));
         let of_word = |word: &Word| Word { steps: word.steps.iter().map(of_segment).collect(), ..word.clone() };
         Self { words: self.words.iter().map(of_word).collect(), ..self.clone() }
     }
+}
+
+/// So many steps of a segment instead of those that end at these shares of it.
+pub(super) fn shares_divided(ends: &[f64], others: usize) -> Vec<f64> {
+    let times: Vec<f64> = std::iter::once(0.0).chain(ends.iter().copied()).collect();
+    divided(&times, others).collect()
 }
 
 /// So many steps instead of those that end at these times after the first, as dense as they are.

@@ -10,15 +10,19 @@ use std::collections::VecDeque;
 use super::followed::Spelled;
 use super::nodes;
 use super::path::{Path, PathStep};
-use super::segments::{Segments, Word};
+use super::scheme_steps::SchemeSteps;
+use super::segments::{SegmentMethod, Segments, Word};
 use super::stretched::Stretched;
 use super::tuning::TUNING;
 use crate::compile::SwitchProgram;
 use crate::numerics::{STEP_NODES, Sample, step_weights};
 use crate::simulate::control::SwitchWatch;
+use crate::simulate::drive::MotionSteps;
 use crate::simulate::ensemble::RowClosure;
 use crate::simulate::error::SimulationError;
+use crate::simulate::explicit::runge_kutta::RungeKutta;
 use crate::simulate::simulator::Simulator;
+use crate::simulate::step::Pace;
 
 /// A segment of all lanes.
 #[derive(Debug)]
@@ -49,6 +53,7 @@ pub(super) struct SegmentTile<'s> {
     horizon: f64,
     duration: f64,
     motion: Stretched<'s>,
+    run: Box<dyn MotionSteps<Stretched<'s>> + 's>,
     watch: SwitchWatch<'s>,
     /// At the beginning of the next segment.
     state: Vec<f64>,
@@ -93,7 +98,7 @@ impl<'s> SegmentTile<'s> {
         let Lanes { word, indices, spelled } = lanes;
         let horizon = segments.horizon;
         let alone = |sample: &Sample| {
-            let path = Path::start(simulator, program, sample, duration, segments.tolerance)?;
+            let path = Path::start(simulator, program, sample, duration, segments.following())?;
             Ok(Alone { path: path.behind_words(), step: None, lost: false })
         };
         let goes_alone = word.is_none() || horizon < duration;
@@ -111,13 +116,19 @@ impl<'s> SegmentTile<'s> {
         let layout = &simulator.start.layout;
         let state = start.block(layout.q.start..layout.v.end).to_vec();
         let guesses = (0..width).map(|l| spelled[lane(l)].lengths.clone()).collect();
-        let motion = Stretched { closure, begin: vec![0.0; width], length: vec![0.0; width] };
+        let pace = Pace { begin: vec![0.0; width], length: vec![0.0; width] };
+        let mut motion = Stretched { closure, pace };
+        let run: Box<dyn MotionSteps<Stretched>> = match segments.method {
+            SegmentMethod::Explicit => Box::new(RungeKutta::start(&mut motion, 0.0, state.clone())),
+            SegmentMethod::Scheme { levels } => Box::new(SchemeSteps::new(simulator, &start, levels)),
+        };
         let (next, recorded) = (0, VecDeque::new());
         Ok(Self {
             word,
             horizon,
             duration,
             motion,
+            run,
             watch,
             state,
             next,
@@ -132,7 +143,7 @@ impl<'s> SegmentTile<'s> {
 
     /// Number of lanes.
     pub fn width(&self) -> usize {
-        self.motion.length.len()
+        self.motion.pace.length.len()
     }
 
     /// Lanes of samples whose instants are all solved for.
@@ -192,8 +203,8 @@ impl<'s> SegmentTile<'s> {
         let event = word.events.get(number);
         let width = self.width();
         for lane in 0..width {
-            self.motion.length[lane] = match (event, word.tail) {
-                (None, Some(end)) => end - self.motion.begin[lane],
+            self.motion.pace.length[lane] = match (event, word.tail) {
+                (None, Some(end)) => end - self.motion.pace.begin[lane],
                 _ => self.guesses[lane][number],
             };
         }
@@ -208,7 +219,7 @@ impl<'s> SegmentTile<'s> {
                 let change = TUNING.beyond_event * self.duration - value / rate;
                 solved[lane] = change.abs() <= TUNING.located * self.duration || !change.is_finite();
                 if !solved[lane] {
-                    self.motion.length[lane] += change;
+                    self.motion.pace.length[lane] += change;
                 }
             }
             if !solved.contains(&false) {
@@ -221,17 +232,17 @@ impl<'s> SegmentTile<'s> {
             let is_off = |lane: usize| {
                 let [value, rate] = self.watch.at_end(event.switch, lane);
                 let off = (value / rate).abs();
-                let is_it = (if event.rises { rate > 0.0 } else { rate < 0.0 }) && self.motion.length[lane] > 0.0;
+                let is_it = (if event.rises { rate > 0.0 } else { rate < 0.0 }) && self.motion.pace.length[lane] > 0.0;
                 off > TUNING.rounded_instant * self.duration || off.is_nan() || !is_it
             };
             for lane in (0..self.samples.len()).filter(|&lane| is_off(lane)).collect::<Vec<_>>() {
-                let time = self.motion.begin[lane];
+                let time = self.motion.pace.begin[lane];
                 self.deviates = Some(self.deviates.map_or(time, |first| first.min(time)));
                 self.lost[lane] = true;
             }
         }
-        let (begin, length) = (self.motion.begin.clone(), self.motion.length.clone());
-        self.motion.begin.iter_mut().zip(&length).for_each(|(begin, length)| *begin += length);
+        let (begin, length) = (self.motion.pace.begin.clone(), self.motion.pace.length.clone());
+        self.motion.pace.begin.iter_mut().zip(&length).for_each(|(begin, length)| *begin += length);
         if let Some(last) = nodes.last() {
             self.state.copy_from_slice(last);
         }
@@ -249,8 +260,8 @@ impl<'s> SegmentTile<'s> {
     /// Takes the steps of a segment, which end at these shares of it, with the lengths as they are: the states at its
     /// nodes.
     fn pass(&mut self, steps: &[f64], ends_at_event: bool) -> Vec<Vec<f64>> {
-        let Self { motion, watch, state, .. } = self;
-        let nodes = nodes::pass(motion, state, steps, ends_at_event);
+        let Self { motion, run, watch, state, .. } = self;
+        let nodes = nodes::pass(&mut **run, motion, state, steps, ends_at_event);
         if ends_at_event {
             watch.end(motion.closure.tile());
         }

@@ -5,15 +5,17 @@ use rayon::prelude::*;
 use super::boundary::{boundaries, grazed_at, margins};
 use super::followed::Followed;
 use super::path::Path;
-use super::segments::{Boundary, Event, Segments, Word, WordsEnd};
+use super::scheme_steps::STEPS_OF_SCHEME;
+use super::segments::{Boundary, Event, Following, SegmentMethod, Segments, Word, WordsEnd, shares_divided};
 use super::tuning::TUNING;
 use crate::numerics::{ParameterBox, Sample};
 use crate::simulate::error::SimulationError;
 use crate::simulate::sampling::Instants;
 use crate::simulate::simulator::Simulator;
 
-/// The words of samples up to a time, if there are events at different instants; `None` where there are none, or the
-/// explicit method cannot follow them for a share of the time that is worthwhile.
+/// The words of samples up to a time, if there are events at different instants; `None` where there are none, or they
+/// cannot be followed for a share of the time that is worthwhile. Where the explicit method cannot follow the first, whose
+/// forces may be stiff, the scheme does. Steps of the scheme are no longer than `longest`, s.
 ///
 /// # Errors
 /// Where the first sample cannot be assembled.
@@ -22,10 +24,11 @@ pub fn segments_of(
     domain: &ParameterBox,
     samples: &[Sample],
     duration: f64,
-    tolerance: f64,
+    following: Following,
+    longest: Option<f64>,
 ) -> Result<Option<Segments>, SimulationError> {
     let Some(program) = simulator.switches().filter(|_| can_be_cut(simulator)) else { return Ok(None) };
-    let path = |sample: &Sample| Path::start(simulator, program, sample, duration, tolerance);
+    let path = |sample: &Sample| Path::start(simulator, program, sample, duration, following);
     let is_whole = is_cut_as_a_whole(simulator);
     // Where words end, each sample goes on alone. A single motion has no bounds to gain.
     let may_end = !is_whole && samples.len() > 1;
@@ -38,8 +41,22 @@ pub fn segments_of(
     };
     let follow = |sample: &Sample| kept(sample, Followed::to(path(sample).ok()?, TUNING.followed_share * duration));
     let Some((first, others)) = samples.split_first() else { return Ok(None) };
-    let Some(first) = kept(first, Followed::to(path(first)?, TUNING.followed_share * duration)) else {
-        return Ok(None);
+    let by_first = Followed::to(path(first)?, TUNING.followed_share * duration);
+    let has_failed = following.method == SegmentMethod::Explicit && by_first.events.len() < TUNING.most_events;
+    let Some(first) = kept(first, by_first) else {
+        let method = SegmentMethod::Scheme { levels: TUNING.levels_of_stiff };
+        let by_scheme = Following { method, tolerance: TUNING.error_of_stiff * following.tolerance };
+        let meets_events = |sample: &Sample| {
+            let roughly = Following { tolerance: TUNING.rough_error, ..by_scheme };
+            let path = Path::start(simulator, program, sample, duration, roughly);
+            path.is_ok_and(|path| Followed::to(path, duration).before(duration) > 0)
+        };
+        return match has_failed
+            && samples[..samples.len().min(1 + TUNING.deciding_samples)].par_iter().any(meets_events)
+        {
+            true => segments_of(simulator, domain, samples, duration, by_scheme, longest),
+            false => Ok(None),
+        };
     };
     // The first few, at the ends of the box, decide whether there is anything to cut.
     let mut all = vec![first];
@@ -76,7 +93,24 @@ pub fn segments_of(
         Boundary { grazed_at, samples: [met.len(), missed.len()], ..boundary }
     };
     let boundaries = found.into_iter().map(described).collect();
-    Ok(Some(Segments { words, boundaries, horizon, end, tolerance }))
+    let longest = longest.filter(|_| following.method != SegmentMethod::Explicit);
+    let words = words.into_iter().zip(&groups).map(|(word, group)| match longest {
+        Some(longest) => divided_word(word, &members(&all, group), longest, horizon),
+        None => word,
+    });
+    let Following { tolerance, method } = following;
+    Ok(Some(Segments { words: words.collect(), boundaries, horizon, end, tolerance, method }))
+}
+
+/// A word of some motions up to a time, of which no step of the scheme is longer than `longest`, s.
+fn divided_word(word: Word, all: &[&Followed], longest: f64, end: f64) -> Word {
+    let of_segment = |(segment, ends): (usize, &Vec<f64>)| {
+        let reach = if segment < word.events.len() { f64::INFINITY } else { word.tail.unwrap_or(end) };
+        let length = all.iter().map(|own| own.length(segment, reach)).filter(|own| own.is_finite()).fold(0.0, f64::max);
+        let least = (length / (STEPS_OF_SCHEME as f64 * longest)).ceil() as usize;
+        if ends.len() < least { shares_divided(ends, least) } else { ends.clone() }
+    };
+    Word { steps: word.steps.iter().enumerate().map(of_segment).collect(), ..word }
 }
 
 /// Whether motions may be cut at all: what else steps have to resolve is left to the schedules that do.
@@ -113,13 +147,18 @@ fn groups(all: &[Followed], end: f64) -> Vec<Vec<usize>> {
     grouped(all.len(), |own, other| all[own].agrees(&all[other], end))
 }
 
+/// Motions of these indices.
+fn members<'f>(all: &'f [Followed], group: &[usize]) -> Vec<&'f Followed> {
+    group.iter().map(|&sample| &all[sample]).collect()
+}
+
 /// Words up to a time, why they end there if they do not last to the duration, and the indices of their samples.
 type Found = (f64, Option<WordsEnd>, Vec<(Word, Vec<usize>)>);
 
 /// The words up to the duration; where there are more than the budget, or a sample meets more events than are followed,
 /// up to the last event that all have, before which there are no more. `None` where that is too early.
 fn within_budget(all: &[Followed], duration: f64) -> Option<Found> {
-    let members = |group: &[usize]| group.iter().map(|&sample| &all[sample]).collect::<Vec<&Followed>>();
+    let members = |group: &[usize]| members(all, group);
     let shortest = all.iter().min_by(|a, b| a.known_to.total_cmp(&b.known_to))?;
     let is_whole = shortest.known_to >= duration;
     let whole = groups(all, duration);

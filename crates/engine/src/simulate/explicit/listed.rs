@@ -4,6 +4,7 @@ use symdiff::Tile;
 
 use super::runge_kutta::{RungeKutta, before_event};
 use crate::simulate::adjoint::{Stepping, TileInputs};
+use crate::simulate::drive::MotionSteps as _;
 use crate::simulate::ensemble::RowClosure;
 use crate::simulate::error::SimulationError;
 use crate::simulate::sampling::Instants;
@@ -73,7 +74,7 @@ impl Stepping for ExplicitSteps<'_> {
             }
         }
         if self.at_events.contains(&step) {
-            self.run.step_to_event(&mut self.motion, end);
+            self.run.attempt_to_event(&mut self.motion, end);
         } else {
             self.run.attempt(&mut self.motion, end);
             self.run.finish(&mut self.motion, end);

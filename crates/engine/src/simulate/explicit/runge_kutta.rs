@@ -5,7 +5,7 @@ use symdiff::{Vectorise, math, vectorised};
 
 use super::tableau::{DENSE, FIFTH, Row, STAGES, THIRD, TIMES, WEIGHTS, WITH_DENSE};
 use super::tuning::TUNING;
-use crate::simulate::drive::Motion;
+use crate::simulate::drive::{Motion, MotionSteps};
 
 /// Terms of the dense output: the change, two of the ends' rates, and four of all stages.
 const TERMS: usize = 3 + DENSE.len();
@@ -80,16 +80,6 @@ impl RungeKutta {
     pub fn finish(&mut self, motion: &mut impl Motion, end: f64) {
         motion.close(end, &mut self.next);
         motion.rate(end, &self.next, &mut self.rates[STAGES - 1]);
-    }
-
-    /// Takes a step that ends at an event. Returns when its stages end: shares of its dense output are those of the
-    /// time up to there.
-    pub fn step_to_event(&mut self, motion: &mut impl Motion, end: f64) -> f64 {
-        let before = before_event(self.time, end);
-        self.attempt(motion, before);
-        self.finish(motion, before);
-        self.extrapolate(motion, before, end);
-        before
     }
 
     /// Goes on along the dense output of the step that was finished, before an event, to a time behind it, and
@@ -182,6 +172,65 @@ impl RungeKutta {
         for &(stage, weight) in weights {
             vectorised(Add { to: into, values: &rates[stage], factor: h * weight });
         }
+    }
+}
+
+impl<M: Motion> MotionSteps<M> for RungeKutta {
+    fn begin(&mut self, motion: &mut M, time: f64, state: &[f64]) {
+        *self = Self::start(motion, time, state.to_vec());
+    }
+
+    fn time(&self) -> f64 {
+        self.time
+    }
+
+    fn state(&self) -> &[f64] {
+        &self.state
+    }
+
+    fn next(&self) -> &[f64] {
+        &self.next
+    }
+
+    fn attempt(&mut self, motion: &mut M, end: f64) {
+        RungeKutta::attempt(self, motion, end);
+        self.finish(motion, end);
+    }
+
+    fn ratio(&self, end: f64, sizes: &[f64], tolerance: f64) -> f64 {
+        self.errors(end, sizes, tolerance, 1)[0].ratio
+    }
+
+    fn next_length(&self, step: f64, ratio: f64) -> f64 {
+        next_length(step, ratio)
+    }
+
+    fn prepare_dense(&mut self, motion: &mut M, end: f64) {
+        RungeKutta::prepare_dense(self, motion, end);
+    }
+
+    fn interpolate(&self, share: f64, into: &mut [f64]) {
+        RungeKutta::interpolate(self, share, into);
+    }
+
+    fn extrapolate(&mut self, motion: &mut M, before: f64, end: f64) {
+        RungeKutta::extrapolate(self, motion, before, end);
+    }
+
+    fn accept(&mut self, motion: &mut M, end: f64) {
+        RungeKutta::accept(self, motion, end);
+    }
+
+    /// The rates at the end of the step are those behind the event.
+    fn accept_event(&mut self, motion: &mut M, end: f64) {
+        RungeKutta::accept(self, motion, end);
+    }
+
+    fn attempt_to_event(&mut self, motion: &mut M, end: f64) -> f64 {
+        let before = before_event(self.time, end);
+        MotionSteps::attempt(self, motion, before);
+        RungeKutta::extrapolate(self, motion, before, end);
+        before
     }
 }
 

@@ -9,4 +9,5 @@ mod stepper;
 pub(crate) mod tuning;
 
 pub use newton::Counters;
+pub(in crate::simulate) use stepper::Pace;
 pub use stepper::{LocalError, StepFailure, Stepper};

@@ -13,7 +13,7 @@ use super::prediction::Predict;
 use super::rank_revealing::solve_rank_deficient;
 use super::rounding::{is_rounding, matrix_entries, rounding_of_residuals};
 use super::tuning::TUNING;
-use crate::compile::Program;
+use crate::compile::{ConstraintLevel, Program};
 use crate::simulate::start::allowed_residual;
 
 /// Work of the iteration, summed over all steps.
@@ -51,6 +51,8 @@ pub struct Newton {
     known: usize,
     size_before: f64,
     steps: u64,
+    /// Lengths by which the steps of lanes are shares, s; none where steps are lengths.
+    lengths: Option<Vec<f64>>,
     /// Totals.
     pub counters: Counters,
 }
@@ -71,6 +73,7 @@ impl Newton {
             known: 0,
             size_before: f64::NAN,
             steps: 0,
+            lengths: None,
             counters: Counters::default(),
         }
     }
@@ -79,6 +82,16 @@ impl Newton {
     pub fn forget(&mut self) {
         self.known = 0;
         self.contraction.fill(TUNING.first_contraction);
+    }
+
+    /// Steps are shares of these lengths, s, from now on.
+    pub fn set_lengths(&mut self, lengths: &[f64]) {
+        self.lengths = Some(lengths.to_vec());
+    }
+
+    /// By how much a lane's step is longer than the h that all lanes share, to a power.
+    fn stretch(&self, lane: usize, power: i32) -> f64 {
+        self.lengths.as_ref().map_or(1.0, |lengths| lengths[lane].powi(power))
     }
 
     /// Whether a lane's last step took the rank-revealing solve.
@@ -184,6 +197,9 @@ impl Newton {
                 self.correct_singular(program, tile, gain, count);
             }
             in_lanes(width, Apply { program, tile, gain, pending: &self.pending, norm: &mut self.norm });
+            if let Some(lengths) = &self.lengths {
+                self.norm.iter_mut().zip(lengths).for_each(|(norm, length)| *norm *= length * length);
+            }
             self.counters.iterations += self.pending.iter().map(|&pending| u64::from(pending)).sum::<u64>();
             let test = TestConvergence {
                 count,
@@ -236,7 +252,7 @@ impl Newton {
             let rounding = if count < TUNING.frozen_corrections {
                 vec![0.0; program.residual.len()]
             } else {
-                rounding_of_residuals(program, tile, lane, &entries, gain)
+                rounding_of_residuals(program, tile, lane, &entries, gain * self.stretch(lane, 2))
             };
             let uncertain = |residual: f64, rounding: f64| if residual.abs() <= rounding { 0.0 } else { -residual };
             let residuals = program.residual.iter().zip(&rounding);
@@ -254,8 +270,9 @@ impl Newton {
     fn accept_rounding(&mut self, program: &Program, tile: &mut Tile, h: f64) {
         tile.run(program.matrix());
         let gain = program.coefficients.position_gain(h);
-        for (lane, pending) in self.pending.iter_mut().enumerate() {
-            *pending &= self.singular[lane] || !is_rounding(program, tile, lane, self.last[lane], gain);
+        for lane in 0..self.pending.len() {
+            let gain = gain * self.stretch(lane, 2);
+            self.pending[lane] &= self.singular[lane] || !is_rounding(program, tile, lane, self.last[lane], gain);
         }
     }
 
@@ -264,10 +281,14 @@ impl Newton {
     fn reject_open_constraints(&mut self, program: &Program, tile: &mut Tile, h: f64) {
         tile.run(program.matrix());
         let gain = program.coefficients.constraint_gain(h);
+        let power = match program.coefficients.level {
+            ConstraintLevel::Position => 2,
+            ConstraintLevel::Velocity => 1,
+        };
         let allowed = allowed_residual(&program.scale);
         for &register in &program.residual[program.scale.len()..] {
             for (lane, residual) in tile.lane(register).iter().enumerate() {
-                let closed = (gain * residual).abs() <= allowed;
+                let closed = (gain * self.stretch(lane, power) * residual).abs() <= allowed;
                 self.pending[lane] |= self.singular[lane] && !closed;
             }
         }

@@ -31,6 +31,15 @@ pub struct LocalError {
     pub change: f64,
 }
 
+/// Times of lanes whose steps have lengths of their own: a lane's time is its beginning and a share of its length, and
+/// shares are what lanes have in common.
+#[derive(Clone, Debug, PartialEq)]
+pub(in crate::simulate) struct Pace {
+    /// By lane, s.
+    pub begin: Vec<f64>,
+    pub length: Vec<f64>,
+}
+
 /// The states of a tile of samples, advanced together.
 #[derive(Clone, Debug)]
 pub struct Stepper<'p> {
@@ -41,6 +50,8 @@ pub struct Stepper<'p> {
     step_size: f64,
     /// Step size that the tile's step-size stage was run for.
     prepared_size: f64,
+    /// Where lanes have times of their own.
+    pace: Option<Pace>,
     /// Whether a lane still runs.
     alive: Vec<bool>,
     /// Whether steps end with accelerations that are as accurate as positions.
@@ -63,6 +74,7 @@ impl<'p> Stepper<'p> {
             newton: Newton::new(width),
             step_size: f64::NAN,
             prepared_size: f64::NAN,
+            pace: None,
             alive: vec![true; width],
             refines: false,
             errors: None,
@@ -126,6 +138,14 @@ impl<'p> Stepper<'p> {
     pub(in crate::simulate) fn restart(&mut self, saved: &[f64], h: f64) {
         self.rewind(saved, h);
         self.newton.forget();
+    }
+
+    /// Gives lanes times of their own: lengths and ends of steps are shares from now on. Accelerations of the steps
+    /// before are those of other times.
+    pub(in crate::simulate) fn set_pace(&mut self, pace: &Pace) {
+        self.newton.set_lengths(&pace.length);
+        self.prepared_size = f64::NAN;
+        self.pace = Some(pace.clone());
     }
 
     /// Whether a lane's last step took the rank-revealing solve.
@@ -208,14 +228,35 @@ impl<'p> Stepper<'p> {
         converged
     }
 
+    /// One step without substeps, after which the motion of lanes that do not converge is unknown.
+    pub(in crate::simulate) fn advance_or_lose(&mut self, h: f64, end: f64) {
+        let converged = self.try_step(h, end);
+        for lane in (0..converged.len()).filter(|&lane| !converged[lane]) {
+            for register in self.program.layout.state() {
+                self.tile.lane_mut(register)[lane] = f64::NAN;
+            }
+        }
+    }
+
     /// First half of a step: solves for the state at its end. Returns which of the running lanes converged.
     pub(in crate::simulate) fn solve(&mut self, h: f64, end: f64) -> Vec<bool> {
         self.set_step_size(h);
-        self.tile.lane_mut(self.program.layout.time).fill(end);
+        self.set_time(end);
         self.tile.run(self.program.step());
         let mut converged = self.alive.clone();
         self.newton.solve(self.program, &mut self.tile, h, self.refines, &mut converged);
         converged
+    }
+
+    fn set_time(&mut self, end: f64) {
+        let times = self.tile.lane_mut(self.program.layout.time);
+        match &self.pace {
+            None => times.fill(end),
+            Some(Pace { begin, length }) => {
+                let lanes = times.iter_mut().zip(begin.iter().zip(length));
+                lanes.for_each(|(time, (begin, length))| *time = begin + end * length);
+            }
+        }
     }
 
     /// Second half of a step: the state becomes the one at the step's end.
@@ -254,7 +295,11 @@ impl<'p> Stepper<'p> {
         }
         self.step_size = h;
         if self.prepared_size != h {
-            self.tile.lane_mut(layout.step).fill(h);
+            let steps = self.tile.lane_mut(layout.step);
+            match &self.pace {
+                None => steps.fill(h),
+                Some(Pace { length, .. }) => steps.iter_mut().zip(length).for_each(|(step, length)| *step = h * length),
+            }
             self.tile.run(self.program.step_size());
             self.prepared_size = h;
         }
@@ -355,6 +400,11 @@ impl<'p> Stepper<'p> {
     pub fn observe(&mut self, into: &mut [f64]) {
         self.tile.run(self.program.observe());
         self.copy(self.program.outputs.iter().copied(), into);
+    }
+
+    /// Positions and velocities now: coordinate by coordinate, lane by lane.
+    pub(in crate::simulate) fn motion(&self) -> &[f64] {
+        self.tile.block(self.program.layout.q.start..self.program.layout.v.end)
     }
 
     /// Positions and velocities of a lane now.

@@ -6,7 +6,7 @@ use symdiff::jet::JetSpace;
 use super::GradientError;
 use super::tuning::TUNING;
 use crate::numerics::Sample;
-use crate::simulate::{Integration, JetBox, Schedule, SimulationError, Steps, Wanted, gradients, switched_from};
+use crate::simulate::{JetBox, Schedule, SimulationError, Steps, Wanted, gradients, switched_from};
 use crate::study::ensemble::{Progress, jet_about};
 use crate::study::problem::Study;
 use crate::study::stepping::{StepPlan, segmented_nominal};
@@ -52,7 +52,7 @@ pub fn along_nominal(study: &Study, plan: &StepPlan, outputs: &[usize]) -> Resul
 fn followed(study: &Study, schedule: &Schedule, outputs: &[usize]) -> Result<Vec<AtRow>, GradientError> {
     let parameters = study.domain.dimension() as f64;
     let backwards = TUNING.backwards * (schedule.rows * outputs.len()) as f64;
-    let is_jet = schedule.integration != Integration::Segments && !study.simulator.system.analysis.visits();
+    let is_jet = !schedule.integration.is_cut() && !study.simulator.system.analysis.visits();
     if is_jet && parameters < backwards {
         // Where jets stop or are no numbers, adjoints may go on.
         if let Some(found) = forwards(study, schedule, outputs)? {

@@ -57,7 +57,7 @@ impl<'a> MotionOptions<'a> {
             threads: None,
             size: REPORT_SIZE,
             interruption,
-            between_events: summary.integration == Integration::Segments.name(),
+            between_events: summary.integration.as_deref().is_some_and(Integration::is_cut_by_name),
             formulation: summary.chosen_formulation.as_ref(),
         }
     }

@@ -12,8 +12,8 @@ use crate::assemble::{FormulationInfo, Questions};
 use crate::model::{Analysis, Description, ModesRequest, Stepping};
 use crate::numerics::{ParameterBox, Sample};
 use crate::simulate::{
-    Controller, Integration, Interruption, Observed, Schedule, SimulationError, Simulator, Steps, TimeFunctions,
-    integrator, schedule_for_tolerance, segments_of,
+    Controller, Following, Integration, Interruption, Observed, Schedule, SegmentMethod, SimulationError, Simulator,
+    Steps, TimeFunctions, integrator, schedule_for_tolerance, segments_of,
 };
 
 /// A model that is asked for something in place of its outputs.
@@ -188,7 +188,8 @@ impl<'a> MotionRows<'a> {
             return Ok(None);
         }
         let (duration, output_step) = (description.simulation.duration, description.simulation.output_step);
-        let found = segments_of(&self.simulator, &self.domain, controlling(samples), duration, TUNING.event_error)?;
+        let following = Following { tolerance: TUNING.event_error, method: SegmentMethod::Explicit };
+        let found = segments_of(&self.simulator, &self.domain, controlling(samples), duration, following, None)?;
         let rows = Schedule::rows_of(duration, output_step);
         let finer = (TUNING.rows_between_events / rows).max(1).ilog2();
         let dense = output_step / f64::from(1 << finer);

@@ -6,7 +6,9 @@ use crate::methods::Keep;
 use crate::model::{Analysis, Description, Stepping};
 use crate::numerics::{Sample, spread};
 use crate::results::{EventSummary, EventsFollowed, MethodSummary};
-use crate::simulate::{Boundary, Counters, Schedule, SimulationError, SwitchSearch, WordsEnd, segments_of};
+use crate::simulate::{
+    Boundary, Counters, Following, Schedule, SegmentMethod, SimulationError, SwitchSearch, WordsEnd, segments_of,
+};
 use crate::study::bounding::Switches;
 use crate::study::problem::{Study, problem};
 use crate::study::stepping::tuning::TUNING;
@@ -62,7 +64,8 @@ fn segments_of_samples(study: &Study, samples: &[Sample]) -> Result<Option<Sched
     };
     let asked = of_steps.into_iter().chain(study.request.tolerance).map(|tolerance| TUNING.event_share * tolerance);
     let tolerance = asked.fold(TUNING.event_error, f64::min);
-    let segments = segments_of(&study.simulator, &study.domain, samples, duration, tolerance)?;
+    let following = Following { tolerance, method: SegmentMethod::Explicit };
+    let segments = segments_of(&study.simulator, &study.domain, samples, duration, following, None)?;
     Ok(segments.map(|segments| Schedule::segmented(duration, output_step, segments)))
 }
 

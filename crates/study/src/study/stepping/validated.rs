@@ -47,7 +47,7 @@ pub fn damped_modes(study: &Study, schedule: &Schedule) -> Vec<ExcitedMode> {
         Stepping::Fixed(_)
             if has_steps
                 && !study.request.is_empty()
-                && !matches!(schedule.integration, Integration::Explicit | Integration::Segments) =>
+                && !(schedule.integration == Integration::Explicit || schedule.integration.is_cut()) =>
         {
             // The finest level has the most weight.
             let halvings = schedule.integration.order() - 2;
