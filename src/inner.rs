@@ -5,10 +5,6 @@ pub mod assemble {
     pub use crate::assemble::{Questions, build, in_absolute_coordinates, in_joint_coordinates};
 }
 
-pub mod certificate {
-    pub use crate::certificate::{Certificate, check};
-}
-
 pub mod cli {
     pub use crate::cli::main;
 }
@@ -22,7 +18,7 @@ pub mod elements {
 }
 
 pub mod export {
-    pub use crate::export::{bounds_csv, effects_page, write_cost};
+    pub use crate::export::{bounds_csv, effects_page};
 }
 
 pub mod methods {

@@ -5,7 +5,10 @@
 mod api;
 mod cli;
 
-pub use api::{Axis, Band, Error, Model, ModelBuilder, Output, Samples, Study, StudyResult, Sweep, Value};
+pub use api::{Axis, Band, Error, Model, ModelBuilder, Output, Samples, Study, StudyResult, Sweep, Value, write_cost};
+/// Proofs of certified bounds, as [`results::Bounds::certified`] has them, and their checker, which shares no code with
+/// what makes them.
+pub use mbint_certificate::certificate;
 /// Results as data: what `summary.json` holds, allocations, statistics and studies of costs.
 pub use mbint_study::results;
 #[doc(inline)]
@@ -23,7 +26,6 @@ pub use results::{
 pub use syntax::Diagnostics;
 
 // Rooms of the crates below keep their names here.
-use mbint_certificate::certificate;
 use mbint_engine::{assemble, c_code, compile, reduce, simulate};
 use mbint_export::{export, overview};
 use mbint_language::{grammar, syntax};

@@ -12,7 +12,7 @@ mod value;
 pub use builder::ModelBuilder;
 pub use error::Error;
 pub use model::Model;
-pub use result::{Band, Output, StudyResult};
+pub use result::{Band, Output, StudyResult, write_cost};
 pub use samples::Samples;
 pub use study::Study;
 pub use sweep::{Axis, Sweep};

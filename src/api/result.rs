@@ -6,7 +6,8 @@ use super::Error;
 use crate::export;
 use crate::methods::Method;
 use crate::results::{
-    self, Bounds, OutputBounds, Provenance, ReducedSummary, RequirementSummary, StatisticsResult, Summary, foremost,
+    self, Bounds, CostStudy, OutputBounds, Provenance, ReducedSummary, RequirementSummary, StatisticsResult, Summary,
+    foremost,
 };
 
 /// Bounds of every output over time, with their errors.
@@ -94,6 +95,14 @@ impl StudyResult {
     pub fn bounds(&self) -> &Bounds {
         &self.bounds
     }
+}
+
+/// Writes the settings of a study of costs, their curves and their plots into a folder, and gives their paths.
+///
+/// # Errors
+/// [`Error::Write`]: the folder or a file cannot be written.
+pub fn write_cost(study: &CostStudy, folder: impl AsRef<Path>) -> Result<Vec<PathBuf>, Error> {
+    Ok(export::write_cost(folder.as_ref(), study)?)
 }
 
 impl<'r> Output<'r> {

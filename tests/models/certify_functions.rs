@@ -1,7 +1,7 @@
 //! Certified bounds of laws beyond arithmetic: exponentials, logarithms, powers, tables, contacts that are not reached,
 //! and forces that jump. Solutions are by hand, or by Dormand and Prince's method of equations by hand.
 
-use mbint::inner::certificate::{Certificate, check};
+use mbint::certificate::{Certificate, check};
 use mbint::results::{Bounds, Method};
 
 use super::certify_motion::{box_of, certify, excess};

@@ -2,7 +2,7 @@
 //! hardly wider than what these reach, and say where they end.
 
 use mbint::Study;
-use mbint::inner::certificate::{Certificate, check};
+use mbint::certificate::{Certificate, check};
 use mbint::results::{Bounds, Method};
 use rayon::prelude::*;
 

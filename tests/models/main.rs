@@ -84,6 +84,7 @@ mod robot_inertia;
 mod robot_wrenches;
 mod rotation;
 mod run_all;
+mod scheme_between_events;
 mod schemes;
 mod several_parameters;
 mod singular;

@@ -6,9 +6,8 @@ use std::fs;
 use std::process::Command;
 use std::sync::Mutex;
 
-use mbint::Model;
-use mbint::inner::export::write_cost;
 use mbint::results::CostStudy;
+use mbint::{Model, write_cost};
 
 /// A mass on a spring that is known to 40 %: after a second the phases of its oscillations differ by four radians, so
 /// that bounds are reached at inner points of the interval.
@@ -224,5 +223,5 @@ fn what_is_measured_before_an_interruption_is_kept() {
     assert!(half.bounds.iter().all(|point| point.failure.is_none() && point.seconds.is_finite()));
     assert!(half.trajectories.is_empty() && !whole.trajectories.is_empty());
     let place = tempfile::tempdir().unwrap();
-    assert!(!write_cost(place.path(), &half).unwrap().is_empty());
+    assert!(!write_cost(&half, place.path()).unwrap().is_empty());
 }

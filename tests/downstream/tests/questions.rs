@@ -274,3 +274,21 @@ fn models_with_errors_show_their_lines() {
     let error = Model::from_yaml_str("stack.yaml", &STACK.replace("block.x,", "blok.x,")).unwrap_err();
     assert!(error.to_string().contains("stack.yaml:9:17"), "{error}");
 }
+
+#[test]
+fn a_study_of_costs_is_written() {
+    let place = std::env::temp_dir().join("mbint_downstream_cost");
+    let study = swing().study().cost(1e-2, 1.0).unwrap();
+    let files = mbint::write_cost(&study, &place).unwrap();
+    assert!(!files.is_empty() && files.iter().all(|file| file.is_file()), "{files:?}");
+    std::fs::remove_dir_all(place).unwrap();
+}
+
+#[test]
+fn a_certificate_is_checked_by_who_asked_for_it() {
+    use mbint::certificate::{Certificate, check};
+    let result = swing().study().certified().run().unwrap();
+    let systems = result.bounds().certified.clone();
+    assert!(!systems.is_empty());
+    check(&Certificate { model: "swing".to_owned(), files: Vec::new(), systems }).unwrap();
+}

@@ -95,7 +95,7 @@ impl Schedule {
     /// Steps between the events that all samples meet.
     pub fn segmented(duration: f64, output_step: f64, segments: Segments) -> Self {
         let integration = match segments.method {
-            SegmentMethod::Explicit => Integration::Segments,
+            SegmentMethod::Explicit | SegmentMethod::ExplicitFromRest => Integration::Segments,
             SegmentMethod::Scheme { levels } => Integration::SchemeSegments { levels },
         };
         let (rows, steps) = (rows(duration, output_step), StepList::Segmented(segments));

@@ -1,5 +1,7 @@
 //! Steps of one motion after another, by whichever method.
 
+use crate::simulate::step::Counters;
+
 /// One step after another of a motion `M`. A step is tried as often as its end changes, until it is accepted.
 pub(in crate::simulate) trait MotionSteps<M>: std::fmt::Debug + Send + Sync {
     /// Begins with a state (2n lines) at a time.
@@ -18,6 +20,14 @@ pub(in crate::simulate) trait MotionSteps<M>: std::fmt::Debug + Send + Sync {
     /// Largest error over the allowance of the step that was tried, of one lane; `sizes` (2n) is what counts as one of
     /// each line, `tolerance` the share of it that a step may err by.
     fn ratio(&self, end: f64, sizes: &[f64], tolerance: f64) -> f64;
+
+    /// Into how many equal parts others, who take these steps, have to divide the step that was tried.
+    fn parts(&self, _end: f64, _sizes: &[f64]) -> usize {
+        1
+    }
+
+    /// The shortest step that was taken, as a share of the step that was tried.
+    fn shortest(&self) -> f64;
 
     /// Length of the next step given that of the one that was tried, and its error over the tolerance: of the same step
     /// once more where it is more than 1.
@@ -38,6 +48,11 @@ pub(in crate::simulate) trait MotionSteps<M>: std::fmt::Debug + Send + Sync {
 
     /// Goes on from the end of the step that was tried, at which equations have switched.
     fn accept_event(&mut self, motion: &mut M, end: f64);
+
+    /// Newton iterations and rank-revealing solves so far; none of explicit methods.
+    fn counters(&self) -> Counters {
+        Counters::default()
+    }
 
     /// Tries a step that ends at an event. Returns when its stages end: shares are those of the time up to there.
     fn attempt_to_event(&mut self, motion: &mut M, end: f64) -> f64;

@@ -1,22 +1,18 @@
-//! One sample whose state is a polynomial in the uncertain parameters: the scheme in jet arithmetic.
-//!
-//! Newton solves each step at the box's centre. With the Newton matrix of that solution, J₀, every sweep
-//! x ← x − J₀⁻¹ R(x) in jets then makes one more order exact: the step's derivatives with respect to the parameters to
-//! any order, without differentiating anything by hand.
+//! One sample whose state is a polynomial in the uncertain parameters, under the scheme.
 
 use symdiff::{JetMemory, jet::JetSpace};
 
 use super::jet_states::{
-    JetBox, accelerate, add_correction, assembled_jet, corrections, sample_states, set_parameters, shift_accelerations,
+    JetBox, accelerate, add_correction, assembled_jet, corrections, sample_states, shift_accelerations,
 };
-use crate::compile::Tapes;
+use super::jet_stepper::JetStepper;
 use crate::simulate::control::Steps;
 use crate::simulate::drive::{Observed, RowTile, Stop, TiledRun};
 use crate::simulate::error::SimulationError;
 use crate::simulate::interruption::StepInterruption;
 use crate::simulate::sampling::{Instants, Sampling};
 use crate::simulate::simulator::Simulator;
-use crate::simulate::step::{Counters, Stepper};
+use crate::simulate::step::Counters;
 
 /// The run of one jet under the scheme.
 pub type JetRun<'s> = TiledRun<'s, SchemeJet<'s>>;
@@ -25,10 +21,7 @@ pub type JetRun<'s> = TiledRun<'s, SchemeJet<'s>>;
 #[derive(Debug)]
 pub struct SchemeJet<'s> {
     simulator: &'s Simulator,
-    order: usize,
-    /// The box's centre.
-    center: Stepper<'s>,
-    memory: JetMemory<'s>,
+    stepper: JetStepper<'s>,
     /// The start's, which solves for the accelerations of rows, and after instants at which states change.
     start: JetMemory<'s>,
     /// Whether rows have accelerations of their own.
@@ -37,7 +30,6 @@ pub struct SchemeJet<'s> {
     sampling: Option<Sampling<'s>>,
     /// Whether rows make their velocities consistent.
     projects: bool,
-    step_size: f64,
     /// Whether it stopped.
     is_lost: bool,
 }
@@ -54,29 +46,10 @@ impl<'s> JetRun<'s> {
         first_step: f64,
     ) -> Result<Self, SimulationError> {
         let (assembled, start) = assembled_jet(simulator, space, about, first_step)?;
-        let order = space.monomials().order();
-        let program = &simulator.program;
-        let mut memory = JetMemory::new(space, program.registers(), program.constants());
-        set_parameters(simulator, space, &mut memory, about);
-        for register in program.layout.state() {
-            memory.jet_mut(register).copy_from_slice(start.jet(register));
-        }
-        memory.run(program.sample());
+        let stepper = JetStepper::new(simulator, space, about, &assembled, &start);
         let recomputes = simulator.solves_row_accelerations() || simulator.projects_row_velocities();
-        let center = Stepper::new(program, &assembled);
         let sampling = Sampling::new(simulator, &assembled);
-        let jet = SchemeJet {
-            simulator,
-            order,
-            center,
-            memory,
-            start,
-            recomputes,
-            sampling,
-            projects: false,
-            step_size: f64::NAN,
-            is_lost: false,
-        };
+        let jet = SchemeJet { simulator, stepper, start, recomputes, sampling, projects: false, is_lost: false };
         Ok(Self::of(simulator, vec![jet]))
     }
 }
@@ -89,7 +62,7 @@ impl<'s> RowTile<'s> for SchemeJet<'s> {
     }
 
     fn width(&self) -> usize {
-        self.memory.jet(self.simulator.program.layout.time).len()
+        self.stepper.memory.jet(self.simulator.program.layout.time).len()
     }
 
     fn samples(&self) -> Vec<usize> {
@@ -106,9 +79,9 @@ impl<'s> RowTile<'s> for SchemeJet<'s> {
             if self.is_lost || asked.ends_now() {
                 break;
             }
-            if let Err(singular) = self.step(h, end) {
+            if let Err(singular) = self.stepper.step(h, end) {
                 self.is_lost = true;
-                let equation = self.center.worst_equation(0);
+                let equation = self.stepper.center.worst_equation(0);
                 return vec![Stop { sample: 0, row, time: end, equation, open: None, singular }];
             }
             self.sample(end);
@@ -124,7 +97,7 @@ impl<'s> RowTile<'s> for SchemeJet<'s> {
         let motion = if observed == Observed::Outputs { 0..0 } else { layout.q.start..layout.v.end };
         let (before, outputs) = into.split_at_mut(motion.len() * self.width());
         for (register, jet) in motion.zip(before.chunks_exact_mut(self.width())) {
-            jet.copy_from_slice(self.memory.jet(register));
+            jet.copy_from_slice(self.stepper.memory.jet(register));
         }
         if !outputs.is_empty() {
             self.observe(outputs);
@@ -133,7 +106,7 @@ impl<'s> RowTile<'s> for SchemeJet<'s> {
 
     /// Those of the centre.
     fn counters(&self) -> Counters {
-        self.center.counters()
+        self.stepper.center.counters()
     }
 }
 
@@ -141,10 +114,11 @@ impl SchemeJet<'_> {
     /// Lets the states change that do so at this time.
     fn sample(&mut self, time: f64) {
         let Some(sampling) = &mut self.sampling else { return };
-        if !sampling.end(&mut self.center, time) {
+        if !sampling.end(&mut self.stepper.center, time) {
             return;
         }
-        let Self { simulator, start, memory, center, order, .. } = self;
+        let Self { simulator, start, stepper, .. } = self;
+        let JetStepper { memory, center, order, step_size, .. } = stepper;
         let layout = &simulator.program.layout;
         let constant = |memory: &mut JetMemory, register: usize| {
             memory.jet_mut(register)[0] = center.tile().lane(register)[0];
@@ -156,7 +130,7 @@ impl SchemeJet<'_> {
         // The centre's converge where those of the step are far.
         layout.w.clone().chain(layout.lambda.clone()).for_each(|register| constant(start, register));
         accelerate(simulator, start, *order);
-        shift_accelerations(simulator, start, *order, time, simulator.program.coefficients.shift() * self.step_size);
+        shift_accelerations(simulator, start, *order, time, simulator.program.coefficients.shift() * *step_size);
         for register in layout.v.start..layout.lambda.end {
             memory.jet_mut(register).copy_from_slice(start.jet(register));
             constant(memory, register);
@@ -172,97 +146,37 @@ impl SchemeJet<'_> {
             _ if !self.recomputes => Vec::new(),
             start => {
                 for register in layout.state().chain([layout.time]) {
-                    start.jet_mut(register).copy_from_slice(self.memory.jet(register));
+                    start.jet_mut(register).copy_from_slice(self.stepper.memory.jet(register));
                 }
                 if self.projects {
-                    for _ in 0..corrections(self.order) {
+                    for _ in 0..corrections(self.stepper.order) {
                         start.run(self.simulator.start.projection());
                         add_correction(start, layout.v.clone(), layout.correction.start);
                     }
                 }
                 if self.simulator.solves_row_accelerations() {
-                    accelerate(self.simulator, start, self.order);
+                    accelerate(self.simulator, start, self.stepper.order);
                 }
                 let finite = |register: usize| start.jet(register).iter().all(|coefficient| coefficient.is_finite());
                 let solved = unknowns.clone().all(finite);
-                let own =
-                    unknowns.clone().filter(|_| solved).map(|register| self.memory.jet(register).to_vec()).collect();
+                let own = unknowns
+                    .clone()
+                    .filter(|_| solved)
+                    .map(|register| self.stepper.memory.jet(register).to_vec())
+                    .collect();
                 for register in unknowns.clone().filter(|_| solved) {
-                    self.memory.jet_mut(register).copy_from_slice(start.jet(register));
+                    self.stepper.memory.jet_mut(register).copy_from_slice(start.jet(register));
                 }
                 own
             }
         };
-        self.memory.run(self.simulator.program.observe());
+        self.stepper.memory.run(self.simulator.program.observe());
         let lines = into.chunks_exact_mut(self.width());
         for (line, &register) in lines.zip(&self.simulator.program.outputs) {
-            line.copy_from_slice(self.memory.jet(register));
+            line.copy_from_slice(self.stepper.memory.jet(register));
         }
         for (register, own) in unknowns.zip(&own) {
-            self.memory.jet_mut(register).copy_from_slice(own);
+            self.stepper.memory.jet_mut(register).copy_from_slice(own);
         }
-    }
-
-    /// One step.
-    ///
-    /// # Errors
-    /// `false` where the centre does not converge; `true` where it converges with the rank-revealing solve only, whose
-    /// matrix has no inverse for the sweeps.
-    fn step(&mut self, h: f64, end: f64) -> Result<(), bool> {
-        let program = &self.simulator.program;
-        let layout = &program.layout;
-        self.set_step_size(h);
-        self.memory.set_constant(layout.time, end);
-        self.memory.run(program.step());
-
-        let singular_before = self.center.counters().rank_revealing;
-        if !self.center.solve(h, end)[0] {
-            return Err(false);
-        }
-        if self.center.counters().rank_revealing != singular_before {
-            return Err(true);
-        }
-        self.center.tile_mut().run(program.factor());
-        for &register in program.factor_registers() {
-            self.memory.set_constant(register as usize, self.center.tile().lane(register as usize)[0]);
-        }
-        for (w, x) in layout.w.clone().zip(layout.iterate.clone()) {
-            let prediction = self.memory.jet(w).to_vec();
-            self.memory.jet_mut(x).copy_from_slice(&prediction);
-            self.memory.jet_mut(x)[0] = self.center.tile().lane(x)[0];
-        }
-        for &register in &program.redundant {
-            self.memory.set_constant(register, 0.0);
-        }
-        for register in layout.lambda.clone() {
-            self.memory.jet_mut(register)[0] = self.center.tile().lane(register)[0];
-        }
-        for _ in 0..self.order {
-            self.memory.run(program.correct());
-            let unknowns = layout.iterate.clone().chain(layout.lambda.clone());
-            add_correction(&mut self.memory, unknowns, layout.correction.start);
-        }
-        self.memory.run(program.advance());
-        self.center.finish();
-        Ok(())
-    }
-
-    /// As for a tile: see [`Stepper::set_step_size`].
-    fn set_step_size(&mut self, h: f64) {
-        if self.step_size == h {
-            return;
-        }
-        let program = &self.simulator.program;
-        let layout = &program.layout;
-        if self.step_size.is_finite() {
-            let ratio = h / self.step_size;
-            for (a, w) in layout.a.clone().zip(layout.w.clone()) {
-                let exact = self.memory.jet(w).to_vec();
-                self.memory.jet_mut(a).iter_mut().zip(exact).for_each(|(a, w)| *a = w + ratio * (*a - w));
-            }
-        }
-        self.memory.set_constant(layout.step, h);
-        self.memory.run(program.step_size());
-        self.step_size = h;
     }
 }

@@ -63,6 +63,11 @@ impl<'s> RowClosure<'s> {
         Ok(Self { program, assembly, needs: Needs::of(simulator) })
     }
 
+    /// q, v, a, w, λ of the state whose rates were evaluated last, line by line; a is unknown.
+    pub fn unknowns(&self) -> &[f64] {
+        self.tile().block(self.program.layout.state())
+    }
+
     /// The memory, with the state that was closed last.
     pub fn tile(&self) -> &Tile {
         self.assembly.tile()
@@ -223,6 +228,11 @@ impl<'s> JetClosure<'s> {
             self.memory.jet_mut(register).copy_from_slice(start.jet(register));
         }
         Ok((layout.q.start..layout.v.end).flat_map(|register| start.jet(register).to_vec()).collect())
+    }
+
+    /// q, v, a, w, λ of the state whose rates were evaluated last, jet by jet; a is unknown.
+    pub fn unknowns(&self) -> Vec<f64> {
+        self.program.layout.state().flat_map(|register| self.memory.jet(register)).copied().collect()
     }
 
     /// The jet in a register of the state, the parameters or the time.

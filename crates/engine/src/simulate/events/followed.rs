@@ -1,7 +1,7 @@
 //! The events of one sample that is followed alone, and the word that it spells.
 
 use super::path::{Lost, Path};
-use super::segments::{Event, Segments, Word};
+use super::segments::{Event, Segments, Word, divided};
 use super::tuning::TUNING;
 
 /// The events of one sample, and the ends of its steps between them.
@@ -20,7 +20,7 @@ impl Followed {
         while followed.known_to < reach && followed.events.len() < TUNING.most_events {
             let Ok(step) = path.step(reach) else { break };
             path.go_on(step);
-            ends.push(step.end);
+            ends.extend(divided(&[step.begin, step.end], step.parts));
             followed.known_to = step.end;
             if let Some(event) = step.event {
                 followed.events.push((event, step.end));

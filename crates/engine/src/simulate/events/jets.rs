@@ -10,30 +10,31 @@ use symdiff::jet::JetSpace;
 use super::followed::Spelled;
 use super::nodes;
 use super::path::Path;
+use super::scheme_steps::SchemeSteps;
 use super::segments::{SegmentMethod, Segments};
+use super::stretched::SchemeMotion;
 use super::tuning::TUNING;
 use crate::compile::{SwitchProgram, Tapes};
 use crate::numerics::{Sample, SegmentMotions};
-use crate::simulate::drive::Motion;
+use crate::simulate::drive::{Motion, MotionSteps};
 use crate::simulate::ensemble::{JetBox, JetClosure};
 use crate::simulate::error::SimulationError;
 use crate::simulate::explicit::runge_kutta::RungeKutta;
 use crate::simulate::simulator::Simulator;
+use crate::simulate::step::Pace;
 
 /// Segments of a jet on a time from 0 to 1.
 struct StretchedJet<'s> {
     closure: JetClosure<'s>,
     space: &'s JetSpace,
-    /// When the segment begins, and how long it is, s.
-    begin: Vec<f64>,
-    length: Vec<f64>,
+    /// When the segment begins, and how long it is.
+    pace: Pace,
     product: Vec<f64>,
 }
 
 impl StretchedJet<'_> {
     fn set_time(&mut self, share: f64) {
-        let sum = self.begin.iter().zip(&self.length).map(|(begin, length)| begin + share * length);
-        self.closure.time_mut().iter_mut().zip(sum).for_each(|(time, sum)| *time = sum);
+        self.pace.set_times(share, self.closure.time_mut());
     }
 }
 
@@ -42,7 +43,7 @@ impl Motion for StretchedJet<'_> {
         self.set_time(share);
         self.closure.rate_at_time(state, into);
         for line in into.chunks_exact_mut(self.space.len()) {
-            self.space.mul(line, &self.length, &mut self.product);
+            self.space.mul(line, &self.pace.length, &mut self.product);
             line.copy_from_slice(&self.product);
         }
     }
@@ -54,6 +55,37 @@ impl Motion for StretchedJet<'_> {
 
     fn sample(&mut self, _: f64, _: &mut [f64]) -> bool {
         false
+    }
+}
+
+impl SchemeMotion for StretchedJet<'_> {
+    fn unknowns(&self) -> Vec<f64> {
+        self.closure.unknowns()
+    }
+
+    fn pace(&self) -> Option<&Pace> {
+        Some(&self.pace)
+    }
+
+    fn moved(&self, share: f64, state: &[f64], accelerations: &[f64]) -> Vec<f64> {
+        let (half, terms) = (accelerations.len(), self.space.len());
+        let mut moved = state.to_vec();
+        let mut time = vec![0.0; terms];
+        self.pace.set_steps(share, &mut time);
+        let mut product = vec![0.0; terms];
+        let mut speed = vec![0.0; terms];
+        for line in (0..half).step_by(terms) {
+            let accelerations = &accelerations[line..line + terms];
+            // The speed half way, whose share of the time positions move by.
+            self.space.mul(accelerations, &time, &mut product);
+            for (index, change) in product.iter().enumerate() {
+                speed[index] = state[half + line + index] + 0.5 * change;
+                moved[half + line + index] += change;
+            }
+            self.space.mul(&speed, &time, &mut product);
+            moved[line..line + terms].iter_mut().zip(&product).for_each(|(value, change)| *value += change);
+        }
+        moved
     }
 }
 
@@ -69,8 +101,7 @@ pub fn segment_jets(
     segments: &Segments,
     duration: f64,
 ) -> Result<Option<(usize, SegmentMotions)>, SimulationError> {
-    let is_explicit = segments.method == SegmentMethod::Explicit;
-    let Some(program) = simulator.switches().filter(|_| is_explicit) else { return Ok(None) };
+    let Some(program) = simulator.switches() else { return Ok(None) };
     let sample: Sample = about.center.iter().copied().collect();
     let spelled = Spelled::by(Path::start(simulator, program, &sample, duration, segments.following())?, segments);
     let Some(number) = spelled.word else { return Ok(None) };
@@ -80,8 +111,14 @@ pub fn segment_jets(
     let mut state = closure.start(simulator, space, about)?;
     let mut watch = JetWatch::new(program, space, &closure);
     let zero = vec![0.0; space.len()];
-    let mut motion = StretchedJet { closure, space, begin: zero.clone(), length: zero.clone(), product: zero.clone() };
-    let mut run = RungeKutta::start(&mut motion, 0.0, state.clone());
+    let pace = Pace { begin: zero.clone(), length: zero.clone() };
+    let mut motion = StretchedJet { closure, space, pace, product: zero.clone() };
+    let mut run: Box<dyn MotionSteps<StretchedJet>> = match segments.method {
+        SegmentMethod::Scheme { levels } => {
+            Box::new(SchemeSteps::of_jet(simulator, space, about, state.clone(), levels)?)
+        }
+        _ => Box::new(RungeKutta::start(&mut motion, 0.0, state.clone())),
+    };
     let mut motions = SegmentMotions {
         samples: (0..space.len()).collect(),
         steps: word.steps.clone(),
@@ -89,21 +126,21 @@ pub fn segment_jets(
         nodes: Vec::new(),
     };
     for (segment, steps) in word.steps.iter().enumerate() {
-        space.constant(spelled.lengths[segment], &mut motion.length);
+        space.constant(spelled.lengths[segment], &mut motion.pace.length);
         let event = word.events.get(segment);
         if let (None, Some(tail)) = (event, word.tail) {
-            motion.length.iter_mut().zip(&motion.begin).for_each(|(length, begin)| *length = -begin);
-            motion.length[0] += tail;
+            motion.pace.length.iter_mut().zip(&motion.pace.begin).for_each(|(length, begin)| *length = -begin);
+            motion.pace.length[0] += tail;
         }
         let ends_at_event = event.is_some();
-        let mut nodes = nodes::pass(&mut run, &mut motion, &state, steps, ends_at_event);
+        let mut nodes = nodes::pass(&mut *run, &mut motion, &state, steps, ends_at_event);
         let mut is_solved = event.is_none();
         let mut is_known = is_solved;
         for _ in 0..TUNING.corrections_of_instant {
             let Some(event) = event.filter(|_| !is_solved) else { break };
             let change = watch.change(&motion.closure, event.switch, TUNING.beyond_event * duration);
-            motion.length.iter_mut().zip(&change).for_each(|(length, change)| *length += change);
-            nodes = nodes::pass(&mut run, &mut motion, &state, steps, ends_at_event);
+            motion.pace.length.iter_mut().zip(&change).for_each(|(length, change)| *length += change);
+            nodes = nodes::pass(&mut *run, &mut motion, &state, steps, ends_at_event);
             let (first, others) = (change[0].abs(), change[1..].iter().fold(0.0, |most: f64, own| most.max(own.abs())));
             if first.is_nan() {
                 return Ok(None);
@@ -115,11 +152,11 @@ pub fn segment_jets(
         if !is_known {
             return Ok(None);
         }
-        motion.begin.iter_mut().zip(&motion.length).for_each(|(begin, length)| *begin += length);
+        motion.pace.begin.iter_mut().zip(&motion.pace.length).for_each(|(begin, length)| *begin += length);
         if let Some(last) = nodes.last() {
             state.clone_from(last);
         }
-        motions.times.push(motion.begin.clone());
+        motions.times.push(motion.pace.begin.clone());
         motions.nodes.push(nodes);
     }
     let is_known = motions.nodes.iter().flatten().flatten().all(|value| value.is_finite());

@@ -6,7 +6,7 @@
 //! - `locate`: where a function of the time changes its sign within a step;
 //! - `segments`: the words of a box, the steps between their events, and the boundaries between words;
 //! - `path`: one sample, whose steps end at events, and `followed`: its word;
-//! - `scheme_steps`: steps of HHT-I3 for motions that are stiff;
+//! - `scheme_steps`: steps of HHT-I3 for motions that are stiff, and `level_stepper`: those of one level;
 //! - `word`: the words of some samples, and `boundary`: the surfaces between them;
 //! - `stretched`: segments on a time from 0 to 1, `nodes`: states there, and `tile`: samples on it in lockstep;
 //! - `run`: an ensemble, `rows`: its rows, and `jets`: a jet;
@@ -15,6 +15,7 @@
 mod boundary;
 mod followed;
 mod jets;
+mod level_stepper;
 pub(in crate::simulate) mod locate;
 mod nodes;
 mod path;

@@ -17,6 +17,7 @@ use crate::simulate::explicit::movement::Movement;
 use crate::simulate::explicit::runge_kutta::{RungeKutta, before_event};
 use crate::simulate::features::{FeatureWork, Features, Passage};
 use crate::simulate::simulator::Simulator;
+use crate::simulate::step::Counters;
 
 /// A motion that cannot be followed: it is stiff, not finite, or grazes a switch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,6 +31,8 @@ pub struct PathStep {
     pub end: f64,
     /// The event at its end.
     pub event: Option<Event>,
+    /// Equal parts into which others, who take it too, have to divide it.
+    pub parts: usize,
 }
 
 /// One sample on its way.
@@ -66,19 +69,22 @@ impl<'s> Path<'s> {
         program: &'s SwitchProgram,
         sample: &Sample,
         duration: f64,
-        Following { tolerance, method }: Following,
+        Following { tolerance, method, of_steps }: Following,
     ) -> Result<Self, SimulationError> {
         let assembled = simulator.assemble(1, 0.0, |_| sample.clone())?;
         let mut closure = RowClosure::new(simulator, &assembled)?;
         let layout = &simulator.start.layout;
         let start = assembled.values()[layout.q.start..layout.v.end].to_vec();
         let run: Box<dyn MotionSteps<RowClosure>> = match method {
-            SegmentMethod::Explicit => Box::new(RungeKutta::start(&mut closure, 0.0, start.clone())),
-            SegmentMethod::Scheme { .. } => {
-                let mut run = SchemeSteps::new(simulator, &assembled, TUNING.levels_of_paths);
+            SegmentMethod::Scheme { levels } => {
+                let mut run = SchemeSteps::of_lanes(simulator, &assembled, TUNING.levels_of_paths);
+                if let Some(of_steps) = of_steps.filter(|_| levels < TUNING.levels_of_paths) {
+                    run.judge(levels, of_steps / duration);
+                }
                 run.begin(&mut closure, 0.0, &start);
                 Box::new(run)
             }
+            _ => Box::new(RungeKutta::start(&mut closure, 0.0, start.clone())),
         };
         let mut watch = SwitchWatch::new(program, closure.tile());
         watch.begin(closure.tile());
@@ -100,10 +106,7 @@ impl<'s> Path<'s> {
             event: 0.0,
             tries: 0,
             method,
-            most: match method {
-                SegmentMethod::Explicit => TUNING.most_steps,
-                SegmentMethod::Scheme { .. } => TUNING.most_steps_of_scheme,
-            },
+            most: method.most_steps(),
         })
     }
 
@@ -139,7 +142,7 @@ impl<'s> Path<'s> {
                 continue;
             }
             if let Some((time, switch)) =
-                self.touched(PathStep { begin, end, event: None }).filter(|_| crossing.is_none())
+                self.touched(PathStep { begin, end, event: None, parts: 1 }).filter(|_| crossing.is_none())
             {
                 cut = Some(cut.map_or((self.h, switch), |(uncut, _)| (uncut, switch)));
                 self.h = time - begin;
@@ -170,7 +173,8 @@ impl<'s> Path<'s> {
                 _ if end == goal && step < self.h => self.h,
                 _ => self.run.next_length(step, ratio),
             };
-            return Ok(PathStep { begin, end, event });
+            let parts = self.run.parts(end, &self.sizes_of_lines());
+            return Ok(PathStep { begin, end, event, parts });
         }
     }
 
@@ -230,8 +234,27 @@ impl<'s> Path<'s> {
 
     /// Error over the tolerance of the step that was finished.
     fn error(&self, end: f64) -> f64 {
-        let sizes = self.movement.clone().reaching(&self.start, self.run.next(), 1).sizes();
+        let mut sizes = self.sizes_of_lines();
+        if self.method != SegmentMethod::Explicit {
+            self.allow_rounding(end, &mut sizes);
+        }
         self.run.ratio(end, &sizes, self.tolerance)
+    }
+
+    /// What counts as one of each line at the end of the step that was tried.
+    fn sizes_of_lines(&self) -> Vec<f64> {
+        self.movement.clone().reaching(&self.start, self.run.next(), 1).sizes()
+    }
+
+    /// Adds to what counts as one of each line what its rounding is the tolerance of. Positions are rounded, and
+    /// velocities change by that over the shortest step: accelerations by a spring that steps resolve are no larger.
+    fn allow_rounding(&self, end: f64, sizes: &mut [f64]) {
+        let n = sizes.len() / 2;
+        let shortest = (end - self.run.time()) * self.run.shortest();
+        for (line, size) in sizes.iter_mut().enumerate() {
+            let of_position = TUNING.rounding_of_steps * f64::EPSILON * self.run.next()[line % n].abs();
+            *size += if line < n { of_position } else { of_position / shortest } / self.tolerance;
+        }
     }
 
     /// Tries the step that was taken once more.
@@ -263,6 +286,11 @@ impl<'s> Path<'s> {
         // Of those that cross at once, the first by number.
         let at_once = |(_, share): &(usize, f64)| (share - first) * step <= TUNING.same_event * self.duration;
         found.into_iter().find(at_once)
+    }
+
+    /// Newton iterations and rank-revealing solves so far.
+    pub fn counters(&self) -> Counters {
+        self.run.counters()
     }
 
     /// (value, rate) of a switch at the end of the step that was taken.
@@ -358,10 +386,7 @@ impl<'s> Path<'s> {
         }
         if step.event.is_some() {
             self.event = step.end;
-            self.most = self.most.max(match self.method {
-                SegmentMethod::Explicit => TUNING.most_steps_with_events,
-                SegmentMethod::Scheme { .. } => TUNING.most_steps_of_scheme,
-            });
+            self.most = self.most.max(self.method.most_steps_with_events());
             self.run.accept_event(&mut self.closure, step.end);
         } else {
             self.run.accept(&mut self.closure, step.end);

@@ -9,6 +9,7 @@ use crate::simulate::ensemble::RowClosure;
 use crate::simulate::explicit::tuning::TUNING as EXPLICIT;
 use crate::simulate::interruption::StepInterruption;
 use crate::simulate::simulator::Simulator;
+use crate::simulate::step::Counters;
 
 /// A tile, and its rows.
 #[derive(Debug)]
@@ -146,6 +147,10 @@ impl<'s> RowTile<'s> for SegmentRows<'s> {
             }
         }
         values
+    }
+
+    fn counters(&self) -> Counters {
+        self.tile.counters()
     }
 
     /// The first row behind an event that some sample meets and others do not.

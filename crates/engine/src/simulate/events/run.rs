@@ -16,6 +16,7 @@ use crate::simulate::drive::TiledRun;
 use crate::simulate::ensemble::RowClosure;
 use crate::simulate::error::SimulationError;
 use crate::simulate::simulator::Simulator;
+use crate::simulate::step::Counters;
 
 /// An ensemble of samples at the start.
 #[derive(Debug)]
@@ -78,8 +79,15 @@ impl<'s> SegmentRun<'s> {
     }
 
     /// The motions in their segments, to the end, but those of which an instant cannot be solved for; `None` where
-    /// these are all.
-    pub fn motions(mut self) -> Option<CutMotions> {
+    /// these are all. With them the work that they took.
+    pub fn motions(mut self) -> (Option<CutMotions>, Counters) {
+        let motions = self.gathered();
+        let mut work = Counters::default();
+        self.tiles.iter().for_each(|tile| work += tile.tile.counters());
+        (motions, work)
+    }
+
+    fn gathered(&mut self) -> Option<CutMotions> {
         let strays = |tile: &&SegmentRows| tile.tile.word.is_none();
         let deviates = |tile: &SegmentRows| tile.tile.deviates.unwrap_or(f64::INFINITY);
         let known_to = self.tiles.iter().filter(strays).map(deviates).fold(self.segments.horizon, f64::min);

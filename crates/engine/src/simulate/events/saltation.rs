@@ -9,7 +9,7 @@ use symdiff::{Adjoints, Tile};
 
 use super::followed::Followed;
 use super::path::Path;
-use super::segments::{Event, Segments};
+use super::segments::{Event, SegmentMethod, Segments};
 use super::tuning::TUNING;
 use crate::compile::{SwitchProgram, Tapes};
 use crate::numerics::Sample;
@@ -38,7 +38,9 @@ impl EventSteps {
         until: f64,
         duration: f64,
     ) -> Result<Self, SimulationError> {
-        let Some(program) = simulator.switches() else { return Ok(Self::default()) };
+        // Adjoints are those of the explicit method's steps.
+        let is_explicit = !matches!(segments.method, SegmentMethod::Scheme { .. });
+        let Some(program) = simulator.switches().filter(|_| is_explicit) else { return Ok(Self::default()) };
         let path = Path::start(simulator, program, sample, duration, segments.following())?.behind_words();
         let Followed { events, steps, .. } = Followed::to(path, until);
         let mut own = Self::default();

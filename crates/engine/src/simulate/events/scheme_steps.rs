@@ -5,24 +5,29 @@
 //! themselves up to the next event, from the same state (passive extrapolation, as in [`crate::simulate::drive`]).
 //! Within the step the motion is the polynomial through the eight states that the levels have in common.
 
-use symdiff::Tile;
+use symdiff::jet::JetSpace;
+use symdiff::{Tile, math};
 
-use super::stretched::LaneMotion;
+use super::level_stepper::LevelStepper;
+use super::stretched::SchemeMotion;
 use super::tuning::TUNING;
 use crate::numerics::{STEP_NODES, equispaced_weights};
 use crate::simulate::drive::{MotionSteps, weights};
+use crate::simulate::ensemble::{JetBox, JetStepper, assembled_jet};
+use crate::simulate::error::SimulationError;
 use crate::simulate::explicit::runge_kutta::before_event;
 use crate::simulate::simulator::Simulator;
-use crate::simulate::step::Stepper;
+use crate::simulate::step::{Counters, Stepper};
 
 /// Steps of the first level in one step.
 pub(in crate::simulate) const STEPS_OF_SCHEME: usize = STEP_NODES - 1;
 
-/// A tile of samples.
+/// The levels of a tile of samples, or of a jet.
 #[derive(Debug)]
-pub(super) struct SchemeSteps<'s> {
-    simulator: &'s Simulator,
-    levels: Vec<Level<'s>>,
+pub(super) struct SchemeSteps<S> {
+    /// Δ: a ≈ w(t + Δh).
+    shift: f64,
+    levels: Vec<Level<S>>,
     /// Weights of the levels, and of all but the finest.
     weights: Vec<f64>,
     coarser: Vec<f64>,
@@ -33,6 +38,8 @@ pub(super) struct SchemeSteps<'s> {
     points: Vec<Vec<f64>>,
     /// By how much the finest level changes them, each with that at the beginning first.
     changes: Vec<Vec<f64>>,
+    /// Fewer levels, by which others take these steps, if they do.
+    judged: Option<Judged>,
     /// Whether the motion begins anew: accelerations of the scheme belong to the first step.
     is_anew: bool,
     rates: Vec<f64>,
@@ -40,70 +47,108 @@ pub(super) struct SchemeSteps<'s> {
 
 /// A level, and its state q, v, a, w, λ at the step's beginning, of which a belongs to steps of a length.
 #[derive(Debug)]
-struct Level<'s> {
-    stepper: Stepper<'s>,
+struct Level<S> {
+    stepper: S,
     before: Vec<f64>,
     length: f64,
 }
 
-impl<'s> SchemeSteps<'s> {
+impl<'s> SchemeSteps<Stepper<'s>> {
     /// Of an assembled tile, on so many levels.
-    pub fn new(simulator: &'s Simulator, start: &Tile, levels: usize) -> Self {
-        let level = |_| {
-            let mut stepper = Stepper::new(&simulator.program, start);
-            stepper.refine(true);
-            Level { before: stepper.save(), stepper, length: f64::NAN }
-        };
+    pub fn of_lanes(simulator: &'s Simulator, start: &Tile, levels: usize) -> Self {
         let layout = &simulator.start.layout;
         let state = start.block(layout.q.start..layout.v.end).to_vec();
+        let mut stepper = Stepper::new(&simulator.program, start);
+        stepper.refine(true);
+        Self::of(simulator, (0..levels).map(|_| stepper.clone()), state)
+    }
+}
+
+impl<'s> SchemeSteps<JetStepper<'s>> {
+    /// Of a jet whose state is known, on so many levels.
+    ///
+    /// # Errors
+    /// Where the centre cannot be assembled.
+    pub fn of_jet(
+        simulator: &'s Simulator,
+        space: &'s JetSpace,
+        about: JetBox<'_>,
+        state: Vec<f64>,
+        levels: usize,
+    ) -> Result<Self, SimulationError> {
+        let (assembled, start) = assembled_jet(simulator, space, about, 0.0)?;
+        let stepper = |_| {
+            let mut stepper = JetStepper::new(simulator, space, about, &assembled, &start);
+            stepper.center.refine(true);
+            stepper
+        };
+        Ok(Self::of(simulator, (0..levels).map(stepper), state))
+    }
+}
+
+impl<S: LevelStepper> SchemeSteps<S> {
+    fn of(simulator: &Simulator, steppers: impl Iterator<Item = S>, state: Vec<f64>) -> Self {
+        let levels: Vec<Level<S>> =
+            steppers.map(|stepper| Level { before: stepper.save(), stepper, length: f64::NAN }).collect();
         let zero = vec![0.0; state.len()];
         Self {
-            simulator,
-            levels: (0..levels).map(level).collect(),
-            weights: weights(levels),
-            coarser: if levels > 1 { weights(levels - 1) } else { Vec::new() },
+            shift: simulator.program.coefficients.shift(),
+            weights: weights(levels.len()),
+            coarser: if levels.len() > 1 { weights(levels.len() - 1) } else { Vec::new() },
+            levels,
             time: 0.0,
             next: zero.clone(),
             points: vec![state; STEP_NODES],
             changes: vec![zero.clone(); STEP_NODES],
+            judged: None,
             is_anew: true,
             rates: zero,
         }
     }
 
+    /// Divides steps so that the first levels err by no more than so much in each unit of time.
+    pub fn judge(&mut self, levels: usize, allowed: f64) {
+        let changes = vec![0.0; self.next.len()];
+        self.judged = Some(Judged { weights: weights(levels), allowed, before: changes.clone(), changes });
+    }
+
     /// Accelerations a of all levels for first steps of a length on the first: w a share Δ of the step later, on the
     /// line through w now and on the side of the events on which the motion goes on.
-    fn begin_levels<M: LaneMotion<'s>>(&mut self, motion: &mut M, length: f64) {
-        let (layout, shift) = (&self.simulator.start.layout, self.simulator.program.coefficients.shift());
-        let paces = motion.lengths();
-        let width = paces.len();
-        let n = layout.q.len() * width;
-        let now = &self.points[0];
-        let known = self.levels[0].before[3 * n..4 * n].to_vec();
+    fn begin_levels(&mut self, motion: &mut impl SchemeMotion, length: f64) {
+        let n = self.next.len() / 2;
+        let (of_a, of_w) = (2 * n..3 * n, 3 * n..4 * n);
         for (number, level) in self.levels.iter_mut().enumerate() {
             level.length = length / f64::from(1 << number);
-            let share = shift.abs() * level.length;
-            let mut moved = now.clone();
-            for index in 0..n {
-                let time = share * paces[index % width];
-                moved[index] += time * (now[n + index] + 0.5 * time * known[index]);
-                moved[n + index] += time * known[index];
-            }
+            let share = self.shift.abs() * level.length;
+            let known = level.before[of_w.clone()].to_vec();
+            let moved = motion.moved(share, &self.points[0], &known);
             motion.rate(self.time + share, &moved, &mut self.rates);
-            let behind = motion.closure().tile().block(layout.w.clone());
-            let shifted = known.iter().zip(behind).map(|(now, behind)| now + shift.signum() * (behind - now));
-            level.before[2 * n..3 * n].iter_mut().zip(shifted).for_each(|(value, shifted)| *value = shifted);
+            let behind = &motion.unknowns()[of_w.clone()];
+            let shifted = known.iter().zip(behind).map(|(now, behind)| now + self.shift.signum() * (behind - now));
+            level.before[of_a.clone()].iter_mut().zip(shifted).for_each(|(value, shifted)| *value = shifted);
         }
     }
 
-    /// Largest change by the finest level within the step, since its beginning, and the last term of the polynomial
-    /// through its states; of one line.
-    fn error_of(&self, line: usize) -> f64 {
+    /// Largest change of one line by the finest levels within the step, since its beginning.
+    fn change(&self, line: usize) -> f64 {
         let begin = self.changes[0][line];
-        let by_levels = self.changes.iter().map(|own| (own[line] - begin).abs()).fold(0.0, larger);
-        let last: f64 = self.points.iter().zip(BINOMIALS).map(|(point, weight)| weight * point[line]).sum();
-        larger(by_levels, (LAST_TERM * last).abs())
+        self.changes.iter().map(|own| (own[line] - begin).abs()).fold(0.0, larger)
     }
+
+    /// The last term of the polynomial through the states of a line.
+    fn last_term(&self, line: usize) -> f64 {
+        let last: f64 = self.points.iter().zip(BINOMIALS).map(|(point, weight)| weight * point[line]).sum();
+        (LAST_TERM * last).abs()
+    }
+}
+
+/// The first levels, and by how much all of them change what those have at the beginning of a step and at its end.
+#[derive(Debug)]
+struct Judged {
+    weights: Vec<f64>,
+    allowed: f64,
+    before: Vec<f64>,
+    changes: Vec<f64>,
 }
 
 /// Weights of the seventh difference.
@@ -117,15 +162,17 @@ fn larger(so_far: f64, value: f64) -> f64 {
     if value <= so_far || so_far.is_nan() { so_far } else { value }
 }
 
-impl<'s, M: LaneMotion<'s>> MotionSteps<M> for SchemeSteps<'s> {
+impl<M: SchemeMotion, S: LevelStepper> MotionSteps<M> for SchemeSteps<S> {
     fn begin(&mut self, motion: &mut M, time: f64, state: &[f64]) {
-        let layout = &self.simulator.start.layout;
         (self.time, self.is_anew) = (time, true);
         self.points[0].copy_from_slice(state);
         motion.rate(time, state, &mut self.rates);
-        let assembled = motion.closure().tile().block(layout.state());
-        self.levels.iter_mut().for_each(|level| level.before.copy_from_slice(assembled));
+        let unknowns = motion.unknowns();
+        self.levels.iter_mut().for_each(|level| level.before.copy_from_slice(&unknowns));
         self.changes[0].fill(0.0);
+        if let Some(judged) = &mut self.judged {
+            judged.before.fill(0.0);
+        }
     }
 
     fn time(&self) -> f64 {
@@ -146,6 +193,9 @@ impl<'s, M: LaneMotion<'s>> MotionSteps<M> for SchemeSteps<'s> {
             self.begin_levels(motion, length);
         }
         self.points[1..].iter_mut().chain(&mut self.changes[1..]).for_each(|point| point.fill(0.0));
+        if let Some(judged) = &mut self.judged {
+            judged.changes.fill(0.0);
+        }
         let pace = motion.pace();
         for (number, level) in self.levels.iter_mut().enumerate() {
             let Level { stepper, before, length: before_length } = level;
@@ -156,17 +206,20 @@ impl<'s, M: LaneMotion<'s>> MotionSteps<M> for SchemeSteps<'s> {
             let steps = 1 << number;
             let h = length / f64::from(steps);
             let weight = self.weights[number];
-            let change = weight - self.coarser.get(number).copied().unwrap_or(0.0);
+            let beyond = |others: &[f64]| weight - others.get(number).copied().unwrap_or(0.0);
+            let change = beyond(&self.coarser);
             for (part, (point, changed)) in self.points[1..].iter_mut().zip(&mut self.changes[1..]).enumerate() {
                 for step in 1..=steps {
                     let done = part as f64 + f64::from(step) / f64::from(steps);
                     let is_last = part + 1 == STEPS_OF_SCHEME && step == steps;
                     let time = if is_last { end } else { self.time + done * length };
-                    stepper.advance_or_lose(h, time);
+                    stepper.advance(h, time);
                 }
-                let motion = stepper.motion();
-                point.iter_mut().zip(motion).for_each(|(sum, value)| *sum += weight * value);
-                changed.iter_mut().zip(motion).for_each(|(sum, value)| *sum += change * value);
+                stepper.add_motion(weight, point);
+                stepper.add_motion(change, changed);
+            }
+            if let Some(judged) = &mut self.judged {
+                stepper.add_motion(beyond(&judged.weights), &mut judged.changes);
             }
         }
         self.next.copy_from_slice(&self.points[STEPS_OF_SCHEME]);
@@ -175,22 +228,34 @@ impl<'s, M: LaneMotion<'s>> MotionSteps<M> for SchemeSteps<'s> {
         motion.rate(end, &self.next, &mut self.rates);
     }
 
-    fn ratio(&self, end: f64, sizes: &[f64], tolerance: f64) -> f64 {
-        let n = sizes.len() / 2;
-        let finest = (end - self.time) / (STEPS_OF_SCHEME << (self.levels.len() - 1)) as f64;
-        // Positions are rounded, and velocities are those of them over the shortest steps.
-        let rounding = |line: usize| {
-            let of_position = TUNING.rounding_of_levels * f64::EPSILON * self.next[line % n].abs();
-            if line < n { of_position } else { of_position / finest }
-        };
-        let of_line = |(line, size): (usize, &f64)| self.error_of(line) / (tolerance * size + rounding(line));
+    fn ratio(&self, _: f64, sizes: &[f64], tolerance: f64) -> f64 {
+        let of_line =
+            |(line, size): (usize, &f64)| larger(self.change(line), self.last_term(line)) / (tolerance * size);
         let ratio = sizes.iter().enumerate().map(of_line).fold(0.0, larger);
         if ratio.is_nan() { f64::INFINITY } else { ratio }
     }
 
+    fn parts(&self, end: f64, sizes: &[f64]) -> usize {
+        let Some(Judged { weights, allowed, before, changes }) = &self.judged else { return 1 };
+        let of_line = |((change, before), size): ((&f64, &f64), &f64)| (change - before).abs() / size;
+        let error = changes.iter().zip(before).zip(sizes).map(of_line).fold(0.0, larger);
+        let ratio = error / (allowed * (end - self.time));
+        (math::pow(ratio, 1.0 / (weights.len() + 1) as f64).ceil() as usize).clamp(1, TUNING.most_parts_of_step)
+    }
+
+    fn shortest(&self) -> f64 {
+        1.0 / (STEPS_OF_SCHEME << (self.levels.len() - 1)) as f64
+    }
+
+    fn counters(&self) -> Counters {
+        let mut total = Counters::default();
+        self.levels.iter().for_each(|level| total += level.stepper.counters());
+        total
+    }
+
     fn next_length(&self, step: f64, ratio: f64) -> f64 {
         let order = self.levels.len() as f64 + 1.0;
-        let factor = TUNING.safety_of_levels * ratio.max(f64::MIN_POSITIVE).powf(-1.0 / order);
+        let factor = TUNING.safety_of_levels * math::pow(ratio.max(f64::MIN_POSITIVE), -1.0 / order);
         let largest = if ratio > 1.0 { TUNING.safety_of_levels } else { TUNING.largest_factor_of_levels };
         step * if ratio.is_finite() { factor.clamp(TUNING.least_factor_of_levels, largest) } else { TUNING.least_share }
     }
@@ -217,6 +282,9 @@ impl<'s, M: LaneMotion<'s>> MotionSteps<M> for SchemeSteps<'s> {
         (self.time, self.is_anew) = (end, false);
         self.points[0].copy_from_slice(&self.next);
         self.changes.swap(0, STEPS_OF_SCHEME);
+        if let Some(judged) = &mut self.judged {
+            judged.before.copy_from_slice(&judged.changes);
+        }
         for (number, level) in self.levels.iter_mut().enumerate() {
             level.before = level.stepper.save();
             level.length = length / f64::from(1 << number);

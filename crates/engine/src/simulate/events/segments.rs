@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::tuning::TUNING;
 use crate::simulate::diagnostics::{place_of, written};
 use crate::simulate::simulator::Simulator;
 
@@ -66,11 +67,31 @@ pub enum SegmentMethod {
     /// By the explicit method.
     #[default]
     Explicit,
+    /// The same, where steps may also err by rounding: beside a rest all motion is of its size.
+    ExplicitFromRest,
     /// By the scheme, where forces are stiff or the model asks for it.
     Scheme {
         /// Levels of extrapolation; 1 is the scheme itself.
         levels: usize,
     },
+}
+
+impl SegmentMethod {
+    /// Most steps that are tried of a motion without an event.
+    pub fn most_steps(self) -> usize {
+        match self {
+            Self::Scheme { .. } => TUNING.most_steps_of_scheme,
+            _ => TUNING.most_steps,
+        }
+    }
+
+    /// The same of a motion with events.
+    pub fn most_steps_with_events(self) -> usize {
+        match self {
+            Self::Scheme { .. } => TUNING.most_steps_of_scheme,
+            _ => TUNING.most_steps_with_events,
+        }
+    }
 }
 
 /// How a sample is followed from event to event.
@@ -80,6 +101,8 @@ pub struct Following {
     pub tolerance: f64,
     /// How it is integrated.
     pub method: SegmentMethod,
+    /// With the scheme: what its steps may err by up to the end, as a share of how far the motion has gone.
+    pub of_steps: Option<f64>,
 }
 
 /// The words of a box.
@@ -101,9 +124,9 @@ pub struct Segments {
 }
 
 impl Segments {
-    /// How their samples are followed.
+    /// How their samples are followed, whatever the steps that they share.
     pub fn following(&self) -> Following {
-        Following { tolerance: self.tolerance, method: self.method }
+        Following { tolerance: self.tolerance, method: self.method, of_steps: None }
     }
 
     /// Number of steps of the word that has most.

@@ -14,50 +14,61 @@ pub struct Stretched<'s> {
     pub pace: Pace,
 }
 
-/// Lanes whose times are that of the motion, or shares of lengths of their own.
-pub(super) trait LaneMotion<'s>: Motion {
-    /// What moves.
-    fn closure(&self) -> &RowClosure<'s>;
+/// A motion that levels of the scheme follow, whose time is that of the mechanism, or a share of a length.
+pub(super) trait SchemeMotion: Motion {
+    /// q, v, a, w, λ of the state whose rates were evaluated last; a is unknown.
+    fn unknowns(&self) -> Vec<f64>;
 
-    /// Times of the lanes' own.
+    /// What shares are of.
     fn pace(&self) -> Option<&Pace>;
 
-    /// How long the motion's unit of time is in each lane, s.
-    fn lengths(&self) -> Vec<f64>;
+    /// Moves a state (q, v) on by a share, given its accelerations.
+    fn moved(&self, share: f64, state: &[f64], accelerations: &[f64]) -> Vec<f64>;
 }
 
-impl<'s> LaneMotion<'s> for RowClosure<'s> {
-    fn closure(&self) -> &RowClosure<'s> {
-        self
+impl SchemeMotion for RowClosure<'_> {
+    fn unknowns(&self) -> Vec<f64> {
+        RowClosure::unknowns(self).to_vec()
     }
 
     fn pace(&self) -> Option<&Pace> {
         None
     }
 
-    fn lengths(&self) -> Vec<f64> {
-        vec![1.0; self.tile().width()]
+    fn moved(&self, share: f64, state: &[f64], accelerations: &[f64]) -> Vec<f64> {
+        moved(state, accelerations, |_| share)
     }
 }
 
-impl<'s> LaneMotion<'s> for Stretched<'s> {
-    fn closure(&self) -> &RowClosure<'s> {
-        &self.closure
+impl SchemeMotion for Stretched<'_> {
+    fn unknowns(&self) -> Vec<f64> {
+        self.closure.unknowns().to_vec()
     }
 
     fn pace(&self) -> Option<&Pace> {
         Some(&self.pace)
     }
 
-    fn lengths(&self) -> Vec<f64> {
-        self.pace.length.clone()
+    fn moved(&self, share: f64, state: &[f64], accelerations: &[f64]) -> Vec<f64> {
+        let width = self.pace.length.len();
+        moved(state, accelerations, |index| share * self.pace.length[index % width])
     }
+}
+
+/// A state moved on by each value's own time, s.
+fn moved(state: &[f64], accelerations: &[f64], time: impl Fn(usize) -> f64) -> Vec<f64> {
+    let (positions, velocities) = state.split_at(accelerations.len());
+    let values = || velocities.iter().zip(accelerations).enumerate();
+    let position = |(position, (index, (speed, own))): (&f64, (usize, (&f64, &f64)))| {
+        position + time(index) * (speed + 0.5 * time(index) * own)
+    };
+    let velocity = |(index, (speed, own)): (usize, (&f64, &f64))| speed + time(index) * own;
+    positions.iter().zip(values()).map(position).chain(values().map(velocity)).collect()
 }
 
 impl Stretched<'_> {
     fn set_times(&mut self, share: f64) {
-        let lanes = self.closure.times_mut().iter_mut().zip(self.pace.begin.iter().zip(&self.pace.length));
-        lanes.for_each(|(time, (begin, length))| *time = begin + share * length);
+        self.pace.set_times(share, self.closure.times_mut());
     }
 }
 

@@ -22,7 +22,7 @@ use crate::simulate::ensemble::RowClosure;
 use crate::simulate::error::SimulationError;
 use crate::simulate::explicit::runge_kutta::RungeKutta;
 use crate::simulate::simulator::Simulator;
-use crate::simulate::step::Pace;
+use crate::simulate::step::{Counters, Pace};
 
 /// A segment of all lanes.
 #[derive(Debug)]
@@ -119,8 +119,8 @@ impl<'s> SegmentTile<'s> {
         let pace = Pace { begin: vec![0.0; width], length: vec![0.0; width] };
         let mut motion = Stretched { closure, pace };
         let run: Box<dyn MotionSteps<Stretched>> = match segments.method {
-            SegmentMethod::Explicit => Box::new(RungeKutta::start(&mut motion, 0.0, state.clone())),
-            SegmentMethod::Scheme { levels } => Box::new(SchemeSteps::new(simulator, &start, levels)),
+            SegmentMethod::Scheme { levels } => Box::new(SchemeSteps::of_lanes(simulator, &start, levels)),
+            _ => Box::new(RungeKutta::start(&mut motion, 0.0, state.clone())),
         };
         let (next, recorded) = (0, VecDeque::new());
         Ok(Self {
@@ -149,6 +149,13 @@ impl<'s> SegmentTile<'s> {
     /// Lanes of samples whose instants are all solved for.
     pub fn kept(&self) -> impl Iterator<Item = usize> {
         (0..self.samples.len()).filter(|&lane| !self.lost[lane])
+    }
+
+    /// Newton iterations and rank-revealing solves so far.
+    pub fn counters(&self) -> Counters {
+        let mut total = self.run.counters();
+        self.alone.iter().for_each(|alone| total += alone.path.counters());
+        total
     }
 
     /// Number of positions and velocities, 2n.

@@ -53,18 +53,20 @@ tuning! {
         most_steps_behind_words: usize = 40_000, moves "which motions are given up";
         /// Most steps of the scheme that are tried: each is of many.
         most_steps_of_scheme: usize = 2000, moves "which motions are given up";
+        /// Most parts of a step that a sample takes, where fewer levels of the scheme take it.
+        most_parts_of_step: usize = 256, moves "the steps of stiff motions with events";
         /// Levels of the scheme by which a sample is followed alone.
         levels_of_paths: usize = 4, moves "the steps of stiff motions with events";
         /// Levels of the scheme between events of motions that are stiff.
         levels_of_stiff: usize = 4, moves "the steps of stiff motions with events";
-        /// Error of a step between events of a stiff motion, as so many times that of the explicit method.
-        error_of_stiff: f64 = 100.0, moves "the steps of stiff motions with events";
+        /// Least error of a step of the scheme that is asked for, as a share of how far the motion has gone.
+        error_of_scheme: f64 = 1e-8, moves "the steps of stiff motions with events";
         /// Error of a step by which a stiff motion is first searched for events.
         rough_error: f64 = 1e-4, moves "which motions are cut at events";
         /// Safety factor on the length of the next step of the scheme.
         safety_of_levels: f64 = 0.9, moves "the steps of stiff motions with events";
-        /// Rounding of its positions, in units of rounding.
-        rounding_of_levels: f64 = 64.0, moves "the steps of stiff motions with events";
+        /// Rounding of positions in steps from rest and in those of the scheme, in units of rounding.
+        rounding_of_steps: f64 = 64.0, moves "the steps of stiff motions with events";
         /// Least change of its length.
         least_factor_of_levels: f64 = 0.2, moves "the steps of stiff motions with events";
         /// Largest change of its length.

@@ -8,6 +8,7 @@ use super::path::Path;
 use super::scheme_steps::STEPS_OF_SCHEME;
 use super::segments::{Boundary, Event, Following, SegmentMethod, Segments, Word, WordsEnd, shares_divided};
 use super::tuning::TUNING;
+use crate::compile::SwitchProgram;
 use crate::numerics::{ParameterBox, Sample};
 use crate::simulate::error::SimulationError;
 use crate::simulate::sampling::Instants;
@@ -15,7 +16,7 @@ use crate::simulate::simulator::Simulator;
 
 /// The words of samples up to a time, if there are events at different instants; `None` where there are none, or they
 /// cannot be followed for a share of the time that is worthwhile. Where the explicit method cannot follow the first, whose
-/// forces may be stiff, the scheme does. Steps of the scheme are no longer than `longest`, s.
+/// forces may be stiff, the scheme does. Steps of the scheme that is asked for are no longer than `longest`, s.
 ///
 /// # Errors
 /// Where the first sample cannot be assembled.
@@ -28,6 +29,13 @@ pub fn segments_of(
     longest: Option<f64>,
 ) -> Result<Option<Segments>, SimulationError> {
     let Some(program) = simulator.switches().filter(|_| can_be_cut(simulator)) else { return Ok(None) };
+    let following = match following.method {
+        // Velocities of the scheme are rounded by what rounding of positions is over a short step.
+        SegmentMethod::Scheme { .. } => {
+            Following { tolerance: following.tolerance.max(TUNING.error_of_scheme), ..following }
+        }
+        _ => following,
+    };
     let path = |sample: &Sample| Path::start(simulator, program, sample, duration, following);
     let is_whole = is_cut_as_a_whole(simulator);
     // Where words end, each sample goes on alone. A single motion has no bounds to gain.
@@ -44,19 +52,13 @@ pub fn segments_of(
     let by_first = Followed::to(path(first)?, TUNING.followed_share * duration);
     let has_failed = following.method == SegmentMethod::Explicit && by_first.events.len() < TUNING.most_events;
     let Some(first) = kept(first, by_first) else {
-        let method = SegmentMethod::Scheme { levels: TUNING.levels_of_stiff };
-        let by_scheme = Following { method, tolerance: TUNING.error_of_stiff * following.tolerance };
-        let meets_events = |sample: &Sample| {
-            let roughly = Following { tolerance: TUNING.rough_error, ..by_scheme };
-            let path = Path::start(simulator, program, sample, duration, roughly);
-            path.is_ok_and(|path| Followed::to(path, duration).before(duration) > 0)
-        };
-        return match has_failed
-            && samples[..samples.len().min(1 + TUNING.deciding_samples)].par_iter().any(meets_events)
-        {
-            true => segments_of(simulator, domain, samples, duration, by_scheme, longest),
-            false => Ok(None),
-        };
+        let otherwise = has_failed.then(|| methods_for_failed(simulator, program, samples, duration, following));
+        for following in otherwise.into_iter().flatten() {
+            if let Some(found) = segments_of(simulator, domain, samples, duration, following, None)? {
+                return Ok(Some(found));
+            }
+        }
+        return Ok(None);
     };
     // The first few, at the ends of the box, decide whether there is anything to cut.
     let mut all = vec![first];
@@ -93,13 +95,35 @@ pub fn segments_of(
         Boundary { grazed_at, samples: [met.len(), missed.len()], ..boundary }
     };
     let boundaries = found.into_iter().map(described).collect();
-    let longest = longest.filter(|_| following.method != SegmentMethod::Explicit);
+    let longest = longest.filter(|_| matches!(following.method, SegmentMethod::Scheme { .. }));
     let words = words.into_iter().zip(&groups).map(|(word, group)| match longest {
         Some(longest) => divided_word(word, &members(&all, group), longest, horizon),
         None => word,
     });
-    let Following { tolerance, method } = following;
+    let Following { tolerance, method, .. } = following;
     Ok(Some(Segments { words: words.collect(), boundaries, horizon, end, tolerance, method }))
+}
+
+/// How motions are followed that the explicit method has failed to: it errs by rounding beside a rest, and the scheme
+/// takes long steps where forces are stiff. None where some samples, followed roughly, meet no event.
+fn methods_for_failed(
+    simulator: &Simulator,
+    program: &SwitchProgram,
+    samples: &[Sample],
+    duration: f64,
+    following: Following,
+) -> Vec<Following> {
+    let method = SegmentMethod::Scheme { levels: TUNING.levels_of_stiff };
+    let meets_events = |sample: &Sample| {
+        let roughly = Following { tolerance: TUNING.rough_error, method, of_steps: None };
+        let path = Path::start(simulator, program, sample, duration, roughly);
+        path.is_ok_and(|path| Followed::to(path, duration).before(duration) > 0)
+    };
+    if !samples[..samples.len().min(1 + TUNING.deciding_samples)].par_iter().any(meets_events) {
+        return Vec::new();
+    }
+    let from_rest = Following { method: SegmentMethod::ExplicitFromRest, ..following };
+    vec![from_rest, Following { method, ..following }]
 }
 
 /// A word of some motions up to a time, of which no step of the scheme is longer than `longest`, s.

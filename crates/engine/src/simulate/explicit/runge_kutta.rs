@@ -201,6 +201,10 @@ impl<M: Motion> MotionSteps<M> for RungeKutta {
         self.errors(end, sizes, tolerance, 1)[0].ratio
     }
 
+    fn shortest(&self) -> f64 {
+        1.0
+    }
+
     fn next_length(&self, step: f64, ratio: f64) -> f64 {
         next_length(step, ratio)
     }

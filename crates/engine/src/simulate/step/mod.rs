@@ -1,6 +1,8 @@
 //! One step of a scheme for a tile of samples.
 
+mod local_error;
 mod newton;
+mod pace;
 mod pivots;
 mod prediction;
 mod rank_revealing;
@@ -8,6 +10,7 @@ mod rounding;
 mod stepper;
 pub(crate) mod tuning;
 
+pub use local_error::LocalError;
 pub use newton::Counters;
-pub(in crate::simulate) use stepper::Pace;
-pub use stepper::{LocalError, StepFailure, Stepper};
+pub(in crate::simulate) use pace::Pace;
+pub use stepper::{StepFailure, Stepper};

@@ -2,9 +2,11 @@
 
 use symdiff::Tile;
 
+use super::local_error::{LocalError, measure_errors};
 use super::newton::{Counters, Newton};
+use super::pace::Pace;
 use super::tuning::TUNING;
-use crate::assemble::{CoordinateId, EquationId};
+use crate::assemble::EquationId;
 use crate::compile::{Program, Tapes};
 
 /// A step that failed for a sample, however short its substeps.
@@ -16,28 +18,6 @@ pub struct StepFailure {
     pub time: f64,
     /// The equation with the largest scaled residual.
     pub equation: EquationId,
-}
-
-/// A lane's local error in a step.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct LocalError {
-    /// Of positions, relative to |q| or the coordinate's scale, whichever is larger: what moves the mechanism.
-    pub size: f64,
-    /// The same of the whole change of acceleration, with the parts that constraints and stiff forces leave little of.
-    pub whole: f64,
-    /// The coordinate with this error.
-    pub coordinate: CoordinateId,
-    /// Change of that coordinate's acceleration within the step.
-    pub change: f64,
-}
-
-/// Times of lanes whose steps have lengths of their own: a lane's time is its beginning and a share of its length, and
-/// shares are what lanes have in common.
-#[derive(Clone, Debug, PartialEq)]
-pub(in crate::simulate) struct Pace {
-    /// By lane, s.
-    pub begin: Vec<f64>,
-    pub length: Vec<f64>,
 }
 
 /// The states of a tile of samples, advanced together.
@@ -217,7 +197,9 @@ impl<'p> Stepper<'p> {
     /// state.
     pub fn try_step(&mut self, h: f64, end: f64) -> Vec<bool> {
         let converged = self.solve(h, end);
-        self.measure_errors(h);
+        if let Some(errors) = &mut self.errors {
+            measure_errors(self.program, &mut self.tile, &self.newton, h, errors);
+        }
         if converged != self.alive {
             let state = self.save();
             self.finish();
@@ -252,10 +234,7 @@ impl<'p> Stepper<'p> {
         let times = self.tile.lane_mut(self.program.layout.time);
         match &self.pace {
             None => times.fill(end),
-            Some(Pace { begin, length }) => {
-                let lanes = times.iter_mut().zip(begin.iter().zip(length));
-                lanes.for_each(|(time, (begin, length))| *time = begin + end * length);
-            }
+            Some(pace) => pace.set_times(end, times),
         }
     }
 
@@ -298,7 +277,7 @@ impl<'p> Stepper<'p> {
             let steps = self.tile.lane_mut(layout.step);
             match &self.pace {
                 None => steps.fill(h),
-                Some(Pace { length, .. }) => steps.iter_mut().zip(length).for_each(|(step, length)| *step = h * length),
+                Some(pace) => pace.set_steps(h, steps),
             }
             self.tile.run(self.program.step_size());
             self.prepared_size = h;
@@ -363,37 +342,6 @@ impl<'p> Stepper<'p> {
     /// Local errors of the lanes in the last step; empty unless they are estimated.
     pub fn local_errors(&self) -> &[LocalError] {
         self.errors.as_deref().unwrap_or_default()
-    }
-
-    /// After the iteration: (β + Δ/2 − 1/6) h² (a₊ − a) of each lane, of which only the part that moves the mechanism
-    /// counts. The rest is along the constraints' normals, where positions have no error: a₊ − a is large there after
-    /// every change of h, since the scheme wants velocities with Φ_q v + Φ_t = C h², and would not fall with smaller
-    /// steps.
-    fn measure_errors(&mut self, h: f64) {
-        let Some(errors) = &mut self.errors else { return };
-        self.tile.run(self.program.estimate());
-        let (layout, numbers) = (&self.program.layout, self.program.coefficients);
-        let gain = numbers.error_gain(h).abs();
-        for (lane, worst) in errors.iter_mut().enumerate() {
-            *worst = LocalError::default();
-            let value = |register: usize| self.tile.lane(register)[lane];
-            for (index, scale) in self.program.scale.iter().enumerate() {
-                let [w, a, x] = [&layout.w, &layout.a, &layout.iterate].map(|block| value(block.start + index));
-                let whole = numbers.of_new() * x + numbers.of_old() * w - (1.0 + numbers.of_algorithmic()) * a;
-                // Where the step was singular there are no factors.
-                let moving = value(layout.correction.start + index);
-                let change = if self.newton.is_singular(lane) { whole } else { moving };
-                let unit = gain / scale.max(value(layout.q.start + index).abs());
-                // Written so that NaN wins and stays.
-                if !(unit * change.abs() <= worst.size || worst.size.is_nan()) {
-                    let coordinate = CoordinateId::new(index);
-                    *worst = LocalError { size: unit * change.abs(), coordinate, change, ..*worst };
-                }
-                if !(unit * whole.abs() <= worst.whole || worst.whole.is_nan()) {
-                    worst.whole = unit * whole.abs();
-                }
-            }
-        }
     }
 
     /// Values of the outputs now: output by output, lane by lane; NaN for lanes that no longer run.

@@ -171,7 +171,7 @@ pub fn bound(
         }
         (study.stage)(method.name());
         let bound = || request.bound(motions, validation, &study.request).map_err(simulation_error);
-        let before = motions.over();
+        let (before, iterations) = (motions.over(), motions.iterations());
         let mut outcome = match caught(method.name(), || timed(schedule, method.name(), || Ok((bound()?, ())))) {
             // Others may be complete.
             Ok(Err(SimulationError::Deferred | SimulationError::Interrupted)) => {
@@ -183,6 +183,7 @@ pub fn bound(
                 unknown(study, schedule, method.name())?
             }
         };
+        outcome.summary.newton_iterations += motions.iterations() - iterations;
         if study.interruption.is_asked() && method.about().is_sampled {
             // Not those that were planned.
             outcome.summary.simulations = motions.over() - before;

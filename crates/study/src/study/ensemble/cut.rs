@@ -22,7 +22,9 @@ pub fn cut(motions: &Motions, samples: &[Sample]) -> Result<Option<CutMotions>, 
     let run = SegmentRun::start(motions.simulator, samples, segments, motions.schedule.end())?;
     motions.progress.advance(samples.len() * motions.schedule.rows);
     motions.over.fetch_add(samples.len(), Ordering::Relaxed);
-    Ok(run.motions())
+    let (found, work) = run.motions();
+    motions.iterations.fetch_add(work.iterations, Ordering::Relaxed);
+    Ok(found)
 }
 
 /// As [`Ensemble::segment_jets`].

@@ -17,7 +17,7 @@ mod visits;
 
 use std::ops::Range as Rows;
 use std::sync::OnceLock;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 
 use symdiff::jet::JetSpace;
 use symdiff::taylor_model::ModelSpace;
@@ -63,6 +63,8 @@ pub(super) struct Motions<'a> {
     followed: Option<&'a FollowedEnds>,
     /// Simulations that are over: at the end, or where they stopped.
     over: AtomicUsize,
+    /// Newton iterations of motions that are cut at events.
+    iterations: AtomicU64,
     /// Made when something is enclosed.
     certifier: OnceLock<Certifier<'a>>,
     /// Which outputs' formulas jump, found when it is asked: every row asks.
@@ -83,7 +85,7 @@ impl<'a> Motions<'a> {
         interruption: Interruption<'a>,
     ) -> Self {
         let Steps { schedule, controller: tolerance } = steps;
-        let over = AtomicUsize::new(0);
+        let (over, iterations) = (AtomicUsize::new(0), AtomicU64::new(0));
         let (certifier, jumps) = (OnceLock::new(), OnceLock::new());
         let (store, stored, channels, ledger, followed) = (None, None, &[][..], None, None);
         Self {
@@ -98,6 +100,7 @@ impl<'a> Motions<'a> {
             ledger,
             followed,
             over,
+            iterations,
             certifier,
             jumps,
             stored,
@@ -178,6 +181,11 @@ impl<'a> Motions<'a> {
     /// Simulations that are over: at the end, or where they stopped.
     pub fn over(&self) -> usize {
         self.over.load(Ordering::Relaxed)
+    }
+
+    /// Newton iterations of motions that are cut at events, so far.
+    pub fn iterations(&self) -> u64 {
+        self.iterations.load(Ordering::Relaxed)
     }
 
     fn advance(

@@ -188,7 +188,7 @@ impl<'a> MotionRows<'a> {
             return Ok(None);
         }
         let (duration, output_step) = (description.simulation.duration, description.simulation.output_step);
-        let following = Following { tolerance: TUNING.event_error, method: SegmentMethod::Explicit };
+        let following = Following { tolerance: TUNING.event_error, method: SegmentMethod::Explicit, of_steps: None };
         let found = segments_of(&self.simulator, &self.domain, controlling(samples), duration, following, None)?;
         let rows = Schedule::rows_of(duration, output_step);
         let finer = (TUNING.rows_between_events / rows).max(1).ilog2();

@@ -7,7 +7,8 @@ use crate::model::{Analysis, Description, Stepping};
 use crate::numerics::{Sample, spread};
 use crate::results::{EventSummary, EventsFollowed, MethodSummary};
 use crate::simulate::{
-    Boundary, Counters, Following, Schedule, SegmentMethod, SimulationError, SwitchSearch, WordsEnd, segments_of,
+    Boundary, Counters, Following, Integration, Schedule, SegmentMethod, SimulationError, SwitchSearch, WordsEnd,
+    segments_of,
 };
 use crate::study::bounding::Switches;
 use crate::study::problem::{Study, problem};
@@ -16,11 +17,9 @@ use crate::study::stepping::tuning::TUNING;
 /// Steps between the events that all samples meet, if there are any and all that is asked for follows from motions
 /// that are cut there.
 pub fn segmented(study: &Study) -> Result<Option<Schedule>, SimulationError> {
-    if !may_be_cut(study) {
-        return Ok(None);
-    }
+    let Some(method) = method_between_events(study).filter(|_| may_be_cut(study)) else { return Ok(None) };
     (study.stage)("searching for events");
-    let schedule = segments_of_samples(study, &event_samples(study))?;
+    let schedule = segments_of_samples(study, &event_samples(study), method)?;
     // A number that is accumulated over a motion is one of the whole of it.
     let accumulates = !study.description.reduced.is_empty() || !study.description.requirements.is_empty();
     Ok(schedule.filter(|schedule| !accumulates || lasts(study, schedule)))
@@ -30,13 +29,14 @@ pub fn segmented(study: &Study) -> Result<Option<Schedule>, SimulationError> {
 /// Samples show their events themselves if they are fewer than those that show the box's. A random motion meets more
 /// than are followed.
 pub fn segmented_samples(study: &Study, samples: &[Sample]) -> Result<Option<Schedule>, SimulationError> {
-    let may_be_cut = may_leave_scheme(study) && opens_nothing(study) && !has_given_steps(study);
-    if !may_be_cut || is_random(study.description) {
+    let may_be_cut = opens_nothing(study) && !has_given_steps(study);
+    let Some(method) = method_between_events(study).filter(|_| may_be_cut) else { return Ok(None) };
+    if is_random(study.description) {
         return Ok(None);
     }
     let of_box = event_samples(study);
     let shown = if samples.len() < of_box.len() { samples } else { &of_box };
-    let schedule = segments_of_samples(study, shown)?;
+    let schedule = segments_of_samples(study, shown, method)?;
     Ok(schedule.filter(|schedule| lasts(study, schedule)))
 }
 
@@ -46,16 +46,33 @@ fn lasts(study: &Study, schedule: &Schedule) -> bool {
     schedule.segments().is_some_and(|segments| segments.horizon >= duration)
 }
 
-/// Steps between the events of the nominal motion, if there are any and it can be followed, whatever its scheme.
+/// Steps of the explicit method between the events of the nominal motion, if there are any and it can follow it,
+/// whatever the model's scheme.
 pub fn segmented_nominal(study: &Study) -> Result<Option<Schedule>, SimulationError> {
     if !opens_nothing(study) {
         return Ok(None);
     }
-    segments_of_samples(study, std::slice::from_ref(&study.domain.nominal))
+    let found = segments_of_samples(study, std::slice::from_ref(&study.domain.nominal), SegmentMethod::Explicit)?;
+    Ok(found.filter(|schedule| schedule.integration == Integration::Segments))
+}
+
+/// How motions between events are integrated; `None` where a method asks for the scheme's own steps: certified bounds
+/// enclose it, and who asks for it beside jets wants them across its steps.
+fn method_between_events(study: &Study) -> Option<SegmentMethod> {
+    if may_leave_scheme(study) {
+        return Some(SegmentMethod::Explicit);
+    }
+    let levels = study.description.simulation.extrapolation.unwrap_or(1);
+    let only_sampled = study.request.methods().iter().all(|(method, _)| method.about().is_sampled);
+    (only_sampled && study.request.taylor.is_none()).then_some(SegmentMethod::Scheme { levels })
 }
 
 /// Steps between the events that some samples meet.
-fn segments_of_samples(study: &Study, samples: &[Sample]) -> Result<Option<Schedule>, SimulationError> {
+fn segments_of_samples(
+    study: &Study,
+    samples: &[Sample],
+    method: SegmentMethod,
+) -> Result<Option<Schedule>, SimulationError> {
     let simulation = &study.description.simulation;
     let (duration, output_step) = (simulation.duration, simulation.output_step);
     let of_steps = match simulation.stepping {
@@ -64,8 +81,12 @@ fn segments_of_samples(study: &Study, samples: &[Sample]) -> Result<Option<Sched
     };
     let asked = of_steps.into_iter().chain(study.request.tolerance).map(|tolerance| TUNING.event_share * tolerance);
     let tolerance = asked.fold(TUNING.event_error, f64::min);
-    let following = Following { tolerance, method: SegmentMethod::Explicit };
-    let segments = segments_of(&study.simulator, &study.domain, samples, duration, following, None)?;
+    let following = Following { tolerance, method, of_steps };
+    let longest = match simulation.stepping {
+        Stepping::Tolerance(_) => None,
+        Stepping::Fixed(step) => Some(step),
+    };
+    let segments = segments_of(&study.simulator, &study.domain, samples, duration, following, longest)?;
     Ok(segments.map(|segments| Schedule::segmented(duration, output_step, segments)))
 }
 
@@ -76,7 +97,7 @@ pub fn event_search(study: &Study, schedule: &Schedule) -> Switches {
     let summary = MethodSummary {
         method: "switches".to_owned(),
         simulations,
-        steps: schedule.steps_before(schedule.rows - 1),
+        steps: schedule.steps_before(schedule.rows - 1) * schedule.integration.steps(),
         ..MethodSummary::default()
     };
     (found, summary)
@@ -119,8 +140,7 @@ fn event_samples(study: &Study) -> Vec<Sample> {
 fn may_be_cut(study: &Study) -> bool {
     let problem = problem(study.description, &study.simulator);
     let methods = study.request.methods();
-    may_leave_scheme(study)
-        && (study.domain.dimension() == 0 || methods.iter().all(|(_, method)| method.follows_events(&problem)))
+    (study.domain.dimension() == 0 || methods.iter().all(|(_, method)| method.follows_events(&problem)))
         && !methods.is_empty()
         && !(study.request.keep == Keep::WholeBox && is_random(study.description))
         && opens_nothing(study)
