@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::simulate::events::STEPS_OF_SCHEME;
+use crate::numerics::STEP_NODES;
 
 /// How the steps of a schedule are taken.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -38,7 +38,8 @@ impl Integration {
         match self {
             Self::Plain | Self::Explicit | Self::Segments => 1,
             Self::Extrapolated { levels } => (1 << levels) - 1,
-            Self::SchemeSegments { levels } => STEPS_OF_SCHEME * ((1 << levels) - 1),
+            // Those of the first level end at the nodes.
+            Self::SchemeSegments { levels } => (STEP_NODES - 1) * ((1 << levels) - 1),
         }
     }
 

@@ -8,13 +8,13 @@ pub(super) trait LevelStepper: std::fmt::Debug + Send + Sync {
     /// q, v, a, w, λ.
     fn save(&self) -> Vec<f64>;
 
-    /// Goes on from what was saved, whose a belongs to steps of length h.
+    /// Goes on from a saved state, whose a belongs to steps of length h.
     fn restart(&mut self, saved: &[f64], h: f64);
 
     /// Gives lanes, or the jet, times of their own.
     fn set_pace(&mut self, pace: &Pace);
 
-    /// Takes a step; what does not converge has no numbers afterwards.
+    /// Takes a step; lanes that do not converge have no numbers afterwards.
     fn advance(&mut self, h: f64, end: f64);
 
     /// Newton iterations and rank-revealing solves so far.

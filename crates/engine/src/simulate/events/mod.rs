@@ -32,6 +32,5 @@ mod word;
 pub use jets::segment_jets;
 pub use run::SegmentRun;
 pub(in crate::simulate) use saltation::{EventAdjoints, EventSteps};
-pub(in crate::simulate) use scheme_steps::STEPS_OF_SCHEME;
 pub use segments::{Boundary, Following, SegmentMethod, WordsEnd};
 pub use word::segments_of;

@@ -113,7 +113,7 @@ impl<'s> Path<'s> {
     /// The same with steps enough to go on where words end.
     #[must_use]
     pub fn behind_words(self) -> Self {
-        Self { most: TUNING.most_steps_behind_words, ..self }
+        Self { most: self.method.most_steps_behind_words(), ..self }
     }
 
     /// Takes a step that ends at `goal` at the latest, from which [`go_on`](Self::go_on) goes on.

@@ -19,9 +19,6 @@ use crate::simulate::explicit::runge_kutta::before_event;
 use crate::simulate::simulator::Simulator;
 use crate::simulate::step::{Counters, Stepper};
 
-/// Steps of the first level in one step.
-pub(in crate::simulate) const STEPS_OF_SCHEME: usize = STEP_NODES - 1;
-
 /// The levels of a tile of samples, or of a jet.
 #[derive(Debug)]
 pub(super) struct SchemeSteps<S> {
@@ -138,7 +135,8 @@ impl<S: LevelStepper> SchemeSteps<S> {
     /// The last term of the polynomial through the states of a line.
     fn last_term(&self, line: usize) -> f64 {
         let last: f64 = self.points.iter().zip(BINOMIALS).map(|(point, weight)| weight * point[line]).sum();
-        (LAST_TERM * last).abs()
+        // Coefficient of the Chebyshev polynomial T₇ given the seventh difference: 7⁷/(7! 2¹³).
+        (823_543.0 / (5040.0 * 8192.0) * last).abs()
     }
 }
 
@@ -153,9 +151,6 @@ struct Judged {
 
 /// Weights of the seventh difference.
 const BINOMIALS: [f64; STEP_NODES] = [-1.0, 7.0, -21.0, 35.0, -35.0, 21.0, -7.0, 1.0];
-
-/// Coefficient of the Chebyshev polynomial T₇ on the step, given the seventh difference: 7⁷/(7! 2¹³).
-const LAST_TERM: f64 = 823_543.0 / (5040.0 * 8192.0);
 
 /// Written so that NaN wins and stays.
 fn larger(so_far: f64, value: f64) -> f64 {
@@ -188,7 +183,7 @@ impl<M: SchemeMotion, S: LevelStepper> MotionSteps<M> for SchemeSteps<S> {
     }
 
     fn attempt(&mut self, motion: &mut M, end: f64) {
-        let length = (end - self.time) / STEPS_OF_SCHEME as f64;
+        let length = (end - self.time) / (STEP_NODES - 1) as f64;
         if self.is_anew {
             self.begin_levels(motion, length);
         }
@@ -211,7 +206,7 @@ impl<M: SchemeMotion, S: LevelStepper> MotionSteps<M> for SchemeSteps<S> {
             for (part, (point, changed)) in self.points[1..].iter_mut().zip(&mut self.changes[1..]).enumerate() {
                 for step in 1..=steps {
                     let done = part as f64 + f64::from(step) / f64::from(steps);
-                    let is_last = part + 1 == STEPS_OF_SCHEME && step == steps;
+                    let is_last = part + 1 == STEP_NODES - 1 && step == steps;
                     let time = if is_last { end } else { self.time + done * length };
                     stepper.advance(h, time);
                 }
@@ -222,16 +217,15 @@ impl<M: SchemeMotion, S: LevelStepper> MotionSteps<M> for SchemeSteps<S> {
                 stepper.add_motion(beyond(&judged.weights), &mut judged.changes);
             }
         }
-        self.next.copy_from_slice(&self.points[STEPS_OF_SCHEME]);
+        self.next.copy_from_slice(&self.points[STEP_NODES - 1]);
         motion.close(end, &mut self.next);
-        self.points[STEPS_OF_SCHEME].copy_from_slice(&self.next);
+        self.points[STEP_NODES - 1].copy_from_slice(&self.next);
         motion.rate(end, &self.next, &mut self.rates);
     }
 
     fn ratio(&self, _: f64, sizes: &[f64], tolerance: f64) -> f64 {
-        let of_line =
-            |(line, size): (usize, &f64)| larger(self.change(line), self.last_term(line)) / (tolerance * size);
-        let ratio = sizes.iter().enumerate().map(of_line).fold(0.0, larger);
+        let errors = (0..sizes.len()).map(|line| larger(self.change(line), self.last_term(line)));
+        let ratio = errors.zip(sizes).map(|(error, size)| error / (tolerance * size)).fold(0.0, larger);
         if ratio.is_nan() { f64::INFINITY } else { ratio }
     }
 
@@ -244,7 +238,7 @@ impl<M: SchemeMotion, S: LevelStepper> MotionSteps<M> for SchemeSteps<S> {
     }
 
     fn shortest(&self) -> f64 {
-        1.0 / (STEPS_OF_SCHEME << (self.levels.len() - 1)) as f64
+        1.0 / ((STEP_NODES - 1) << (self.levels.len() - 1)) as f64
     }
 
     fn counters(&self) -> Counters {
@@ -278,10 +272,10 @@ impl<M: SchemeMotion, S: LevelStepper> MotionSteps<M> for SchemeSteps<S> {
     }
 
     fn accept(&mut self, _: &mut M, end: f64) {
-        let length = (end - self.time) / STEPS_OF_SCHEME as f64;
+        let length = (end - self.time) / (STEP_NODES - 1) as f64;
         (self.time, self.is_anew) = (end, false);
         self.points[0].copy_from_slice(&self.next);
-        self.changes.swap(0, STEPS_OF_SCHEME);
+        self.changes.swap(0, STEP_NODES - 1);
         if let Some(judged) = &mut self.judged {
             judged.before.copy_from_slice(&judged.changes);
         }

@@ -92,6 +92,14 @@ impl SegmentMethod {
             _ => TUNING.most_steps_with_events,
         }
     }
+
+    /// The same where words end.
+    pub fn most_steps_behind_words(self) -> usize {
+        match self {
+            Self::Scheme { .. } => TUNING.most_steps_of_scheme,
+            _ => TUNING.most_steps_behind_words,
+        }
+    }
 }
 
 /// How a sample is followed from event to event.

@@ -5,18 +5,17 @@ use rayon::prelude::*;
 use super::boundary::{boundaries, grazed_at, margins};
 use super::followed::Followed;
 use super::path::Path;
-use super::scheme_steps::STEPS_OF_SCHEME;
 use super::segments::{Boundary, Event, Following, SegmentMethod, Segments, Word, WordsEnd, shares_divided};
 use super::tuning::TUNING;
 use crate::compile::SwitchProgram;
-use crate::numerics::{ParameterBox, Sample};
+use crate::numerics::{ParameterBox, STEP_NODES, Sample};
 use crate::simulate::error::SimulationError;
 use crate::simulate::sampling::Instants;
 use crate::simulate::simulator::Simulator;
 
 /// The words of samples up to a time, if there are events at different instants; `None` where there are none, or they
-/// cannot be followed for a share of the time that is worthwhile. Where the explicit method cannot follow the first, whose
-/// forces may be stiff, the scheme does. Steps of the scheme that is asked for are no longer than `longest`, s.
+/// cannot be followed for a share of the time that is worthwhile. Where the explicit method cannot follow the first,
+/// whose forces may be stiff, the scheme does. Steps of the scheme that is asked for are no longer than `longest`, s.
 ///
 /// # Errors
 /// Where the first sample cannot be assembled.
@@ -131,7 +130,7 @@ fn divided_word(word: Word, all: &[&Followed], longest: f64, end: f64) -> Word {
     let of_segment = |(segment, ends): (usize, &Vec<f64>)| {
         let reach = if segment < word.events.len() { f64::INFINITY } else { word.tail.unwrap_or(end) };
         let length = all.iter().map(|own| own.length(segment, reach)).filter(|own| own.is_finite()).fold(0.0, f64::max);
-        let least = (length / (STEPS_OF_SCHEME as f64 * longest)).ceil() as usize;
+        let least = (length / ((STEP_NODES - 1) as f64 * longest)).ceil() as usize;
         if ends.len() < least { shares_divided(ends, least) } else { ends.clone() }
     };
     Word { steps: word.steps.iter().enumerate().map(of_segment).collect(), ..word }
