@@ -2,7 +2,7 @@
 
 use super::{Error, Samples, StudyResult};
 use crate::methods::{BoundsRequest, Certified, Chebyshev, Expand, Method, Proof, Scan, Taylor};
-use crate::model::{Description, EXTRAPOLATION_LEVELS, Formulation, SchemeChoice, Stepping};
+use crate::model::{Description, Formulation, NOT_OF_EXPLICIT, SchemeChoice, Stepping, refused_alpha, refused_levels};
 use crate::numerics::RangeKind;
 use crate::results::{Allocation, CostStudy, Criterion, DesignStudy, Explanation, Fit};
 use crate::study::{
@@ -179,19 +179,15 @@ impl<'a> Study<'a> {
     /// Numerical damping of HHT-I3: α from -1/3, the most, to below 0.
     #[must_use]
     pub fn alpha(mut self, alpha: f64) -> Self {
-        if !(-1.0 / 3.0..0.0).contains(&alpha) {
-            self.wrong.get_or_insert_with(|| format!("α = {alpha} is outside [-1/3, 0)"));
-        }
-        self.description.simulation.alpha = alpha;
+        self.wrong = self.wrong.or_else(|| refused_alpha(alpha));
+        self.description.simulation.alpha = alpha.max(-1.0 / 3.0);
         self
     }
 
     /// Extrapolation over so many lengths of the steps, 2 to 4, by HHT-I3; 1 for none.
     #[must_use]
     pub fn extrapolation(mut self, levels: usize) -> Self {
-        if !EXTRAPOLATION_LEVELS.contains(&levels) && levels != 1 {
-            self.wrong.get_or_insert_with(|| format!("`extrapolation` combines 2, 3 or 4 step lengths, not {levels}"));
-        }
+        self.wrong = self.wrong.or_else(|| refused_levels(levels as f64).filter(|_| levels != 1));
         self.description.simulation.extrapolation = (levels > 1).then_some(levels);
         self
     }
@@ -250,8 +246,7 @@ impl<'a> Study<'a> {
     fn checked(mut self) -> Result<Self, Error> {
         let simulation = &self.description.simulation;
         if simulation.scheme == SchemeChoice::Explicit && simulation.extrapolation.is_some() {
-            let message = "extrapolation is of HHT-I3, but the scheme is explicit";
-            self.wrong.get_or_insert_with(|| message.to_owned());
+            self.wrong.get_or_insert_with(|| NOT_OF_EXPLICIT.to_owned());
         }
         self.wrong.take().map_or(Ok(self), |message| Err(Error::Setting(message)))
     }

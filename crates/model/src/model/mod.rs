@@ -60,6 +60,6 @@ pub use open::{Opened, read_open};
 pub use overlay::read_overlay;
 pub use parameters::{deviation_of, seed_of};
 pub use reading::{Reading, Scene, UnknownScene};
-pub use scheme::EXTRAPOLATION_LEVELS;
+pub use scheme::{NOT_OF_EXPLICIT, refused_alpha, refused_levels};
 pub use tuning::tuning;
 pub use witness::{Witness, WitnessError};

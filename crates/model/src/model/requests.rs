@@ -2,6 +2,7 @@
 
 use super::description::{Formulation, Output, Simulation, StartValue, Stepping};
 use super::named_outputs::with_outputs;
+use super::scheme::refused_alpha;
 use super::{display, reduced};
 use crate::grammar::dimension::KnownDimension;
 use crate::grammar::formulas::Written;
@@ -327,15 +328,13 @@ pub fn simulation(reader: &mut Reader, fields: &Fields) -> Option<Simulation> {
 
 fn alpha(reader: &mut Reader, node: &Node) -> Option<f64> {
     let alpha = reader.number(node, Dimension::NUMBER)?;
-    // The end of the range is a third, which no decimal is exactly.
-    let allowed = (-1.0 / 3.0 - 1e-9..0.0).contains(&alpha);
-    if !allowed {
+    if let Some(message) = refused_alpha(alpha) {
         let help = if alpha == 0.0 {
             "α = 0 is unstable for index-3 equations at every step; the default is -0.1"
         } else {
             "the default is -0.1; nearer to 0 dissipates less, but 0 itself is unstable for index-3 equations"
         };
-        reader.error(Code::OutOfRange, node.span.clone(), format!("α = {alpha} is outside [-1/3, 0)"), help.to_owned());
+        reader.error(Code::OutOfRange, node.span.clone(), message, help.to_owned());
         return None;
     }
     Some(alpha.max(-1.0 / 3.0))

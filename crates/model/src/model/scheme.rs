@@ -11,8 +11,19 @@ use crate::syntax::diagnostic::Diagnostic;
 const SCHEMES: [(&str, SchemeChoice); 3] =
     [("auto", SchemeChoice::Auto), ("hht", SchemeChoice::Hht), ("explicit", SchemeChoice::Explicit)];
 
-/// Levels that can be combined. A fifth gains nothing that rounding leaves.
-pub const EXTRAPOLATION_LEVELS: std::ops::RangeInclusive<usize> = 2..=4;
+/// Why an explicit scheme is not extrapolated.
+pub const NOT_OF_EXPLICIT: &str = "`extrapolation` is of HHT-I3, but the `scheme` is `explicit`";
+
+/// Why so many levels are not combined, if they are not. A fifth gains nothing that rounding leaves.
+pub fn refused_levels(levels: f64) -> Option<String> {
+    let is_allowed = [2.0, 3.0, 4.0].contains(&levels);
+    (!is_allowed).then(|| format!("`extrapolation` combines 2, 3 or 4 step lengths, not {levels}"))
+}
+
+/// Why the scheme has no such α, if it has not. The end of the range is a third, which no decimal is exactly.
+pub fn refused_alpha(alpha: f64) -> Option<String> {
+    (!(-1.0 / 3.0 - 1e-9..0.0).contains(&alpha)).then(|| format!("α = {alpha} is outside [-1/3, 0)"))
+}
 
 /// Reads `scheme` and `extrapolation`.
 pub(super) fn read(reader: &mut Reader, fields: &Fields) -> Option<(SchemeChoice, Option<usize>)> {
@@ -22,10 +33,9 @@ pub(super) fn read(reader: &mut Reader, fields: &Fields) -> Option<(SchemeChoice
     };
     let levels = match fields.get("extrapolation") {
         None => Some(None),
-        Some(node) => match reader.number(node, Dimension::NUMBER)? {
-            number if EXTRAPOLATION_LEVELS.clone().any(|levels| levels as f64 == number) => Some(Some(number as usize)),
-            number => {
-                let message = format!("`extrapolation` combines 2, 3 or 4 step lengths, not {number}");
+        Some(node) => match reader.number(node, Dimension::NUMBER).map(|levels| (levels, refused_levels(levels)))? {
+            (levels, None) => Some(Some(levels as usize)),
+            (_, Some(message)) => {
                 let help = "each level halves the steps; 3 levels take 7 times the steps and are of order 4".to_owned();
                 reader.diagnostics.push(Diagnostic::error(Code::OutOfRange, node.span.clone(), message).help(help));
                 None
@@ -33,10 +43,8 @@ pub(super) fn read(reader: &mut Reader, fields: &Fields) -> Option<(SchemeChoice
         },
     };
     if let (Some(SchemeChoice::Explicit), Some(node)) = (scheme, fields.get("extrapolation")) {
-        let message = "`extrapolation` is of HHT-I3, but the `scheme` is `explicit`";
-        reader.diagnostics.push(
-            Diagnostic::error(Code::ExclusiveKeys, node.span.clone(), message).help("leave one of them out".to_owned()),
-        );
+        let wrong = Diagnostic::error(Code::ExclusiveKeys, node.span.clone(), NOT_OF_EXPLICIT);
+        reader.diagnostics.push(wrong.help("leave one of them out".to_owned()));
     }
     Some((scheme?, levels?))
 }

@@ -104,7 +104,8 @@ pub fn segments_of(
 }
 
 /// How motions are followed that the explicit method has failed to: it errs by rounding beside a rest, and the scheme
-/// takes long steps where forces are stiff. None where some samples, followed roughly, meet no event.
+/// takes long steps where forces are stiff. None where some samples, followed roughly, meet no event, and where
+/// constraints drive a mechanism, at the same instants for all.
 fn methods_for_failed(
     simulator: &Simulator,
     program: &SwitchProgram,
@@ -118,7 +119,8 @@ fn methods_for_failed(
         let path = Path::start(simulator, program, sample, duration, roughly);
         path.is_ok_and(|path| Followed::to(path, duration).before(duration) > 0)
     };
-    if !samples[..samples.len().min(1 + TUNING.deciding_samples)].par_iter().any(meets_events) {
+    let is_driven = simulator.mobility.degrees_of_freedom == 0;
+    if is_driven || !samples[..samples.len().min(1 + TUNING.deciding_samples)].par_iter().any(meets_events) {
         return Vec::new();
     }
     let from_rest = Following { method: SegmentMethod::ExplicitFromRest, ..following };
