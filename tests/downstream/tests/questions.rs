@@ -128,7 +128,7 @@ fn settings_outside_of_their_ranges_are_errors() {
         (swing().study().extrapolation(5), "`extrapolation` combines 2, 3 or 4 step lengths, not 5"),
         (
             swing().study().extrapolation(2).scheme(SchemeChoice::Explicit),
-            "extrapolation is of HHT-I3, but the scheme is explicit",
+            "`extrapolation` is of HHT-I3, but the `scheme` is `explicit`",
         ),
     ] {
         let error = study.run().unwrap_err();
