@@ -37,8 +37,8 @@ tuning! {
         /// Share of a matrix's size below which a product with it is rounding.
         rounding_of_product: f64 = 1e-12, moves "bounds of models with many parameters";
         /// Rounds of conjugate gradients for each parameter: on a face of the box they are as many as pairs of points
-        /// whose curvature counts, and most faces take one.
-        rounds_of_face: usize = 4, moves "bounds of models with many parameters";
+        /// whose curvature counts, and most faces take one. Most searches end long before; a few need seven.
+        rounds_of_face: usize = 16, moves "bounds of models with many parameters";
         /// Least error of an end, as a share of the one that is allowed: some climbs prove nothing.
         least_error: f64 = 0.2, moves "errors of attained ends";
     }
