@@ -27,16 +27,15 @@ pub fn segmented(study: &Study) -> Result<Option<Schedule>, SimulationError> {
 
 /// Steps between the events that single samples meet, if there are any and these can be cut there up to the end.
 /// Samples show their events themselves if they are fewer than those that show the box's. A random motion meets more
-/// than are followed.
+/// than are followed. Steps of the scheme that is asked for are the model's, as those of its source code.
 pub fn segmented_samples(study: &Study, samples: &[Sample]) -> Result<Option<Schedule>, SimulationError> {
-    let may_be_cut = opens_nothing(study) && !has_given_steps(study);
-    let Some(method) = method_between_events(study).filter(|_| may_be_cut) else { return Ok(None) };
-    if is_random(study.description) {
+    let may_be_cut = may_leave_scheme(study) && opens_nothing(study) && !has_given_steps(study);
+    if !may_be_cut || is_random(study.description) {
         return Ok(None);
     }
     let of_box = event_samples(study);
     let shown = if samples.len() < of_box.len() { samples } else { &of_box };
-    let schedule = segments_of_samples(study, shown, method)?;
+    let schedule = segments_of_samples(study, shown, SegmentMethod::Explicit)?;
     Ok(schedule.filter(|schedule| lasts(study, schedule)))
 }
 
