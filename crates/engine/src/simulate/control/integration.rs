@@ -38,7 +38,7 @@ impl Integration {
         match self {
             Self::Plain | Self::Explicit | Self::Segments => 1,
             Self::Extrapolated { levels } => (1 << levels) - 1,
-            // Those of the first level end at the nodes.
+            // One of the first level between each two of the states that its polynomial goes through.
             Self::SchemeSegments { levels } => (STEP_NODES - 1) * ((1 << levels) - 1),
         }
     }

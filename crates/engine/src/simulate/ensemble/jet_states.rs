@@ -28,7 +28,7 @@ pub(super) fn set_parameters(simulator: &Simulator, space: &JetSpace, memory: &m
 ///
 /// # Errors
 /// Where the centre cannot be assembled.
-pub(in crate::simulate) fn assembled_jet<'s>(
+pub(super) fn assembled_jet<'s>(
     simulator: &'s Simulator,
     space: &'s JetSpace,
     about: JetBox<'_>,

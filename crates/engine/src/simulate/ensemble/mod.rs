@@ -16,7 +16,7 @@ pub(crate) mod tuning;
 mod watches;
 
 pub use jet_states::JetBox;
-pub(in crate::simulate) use jet_states::{assembled_jet, corrections};
+pub(in crate::simulate) use jet_states::corrections;
 pub(in crate::simulate) use jet_stepper::JetStepper;
 pub use jets::JetRun;
 pub(crate) use row_closure::Needs;

@@ -235,6 +235,11 @@ impl<'s> JetClosure<'s> {
         self.program.layout.state().flat_map(|register| self.memory.jet(register)).copied().collect()
     }
 
+    /// The memory, with the state that was closed last.
+    pub fn memory(&self) -> &JetMemory<'s> {
+        &self.memory
+    }
+
     /// The jet in a register of the state, the parameters or the time.
     pub fn jet(&self, register: usize) -> &[f64] {
         self.memory.jet(register)

@@ -115,7 +115,7 @@ pub fn segment_jets(
     let mut motion = StretchedJet { closure, space, pace, product: zero.clone() };
     let mut run: Box<dyn MotionSteps<StretchedJet>> = match segments.method {
         SegmentMethod::Scheme { levels } => {
-            Box::new(SchemeSteps::of_jet(simulator, space, about, state.clone(), levels)?)
+            Box::new(SchemeSteps::of_jet(simulator, space, about, &start, motion.closure.memory(), levels))
         }
         _ => Box::new(RungeKutta::start(&mut motion, 0.0, state.clone())),
     };

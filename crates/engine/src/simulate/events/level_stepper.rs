@@ -20,8 +20,8 @@ pub(super) trait LevelStepper: std::fmt::Debug + Send + Sync {
     /// Newton iterations and rank-revealing solves so far.
     fn counters(&self) -> Counters;
 
-    /// Adds positions and velocities times a weight.
-    fn add_motion(&self, weight: f64, to: &mut [f64]);
+    /// Positions and velocities.
+    fn motion(&self) -> impl Iterator<Item = &f64>;
 }
 
 impl LevelStepper for Stepper<'_> {
@@ -45,8 +45,8 @@ impl LevelStepper for Stepper<'_> {
         Stepper::counters(self)
     }
 
-    fn add_motion(&self, weight: f64, to: &mut [f64]) {
-        to.iter_mut().zip(self.motion()).for_each(|(sum, value)| *sum += weight * value);
+    fn motion(&self) -> impl Iterator<Item = &f64> {
+        Stepper::motion(self).iter()
     }
 }
 
@@ -73,7 +73,7 @@ impl LevelStepper for JetStepper<'_> {
         self.center.counters()
     }
 
-    fn add_motion(&self, weight: f64, to: &mut [f64]) {
-        to.iter_mut().zip(self.motion()).for_each(|(sum, value)| *sum += weight * value);
+    fn motion(&self) -> impl Iterator<Item = &f64> {
+        JetStepper::motion(self)
     }
 }

@@ -57,10 +57,12 @@ pub struct Path<'s> {
     tries: usize,
     most: usize,
     method: SegmentMethod,
+    /// Whether others take its steps on fewer levels, and divide them.
+    divides: bool,
 }
 
 impl<'s> Path<'s> {
-    /// At the start of a sample;
+    /// At the start of a sample.
     ///
     /// # Errors
     /// Where the sample cannot be assembled.
@@ -106,14 +108,15 @@ impl<'s> Path<'s> {
             event: 0.0,
             tries: 0,
             method,
-            most: method.most_steps(),
+            divides: of_steps.is_some() && method != SegmentMethod::Explicit,
+            most: method.most_steps(TUNING.most_steps),
         })
     }
 
     /// The same with steps enough to go on where words end.
     #[must_use]
     pub fn behind_words(self) -> Self {
-        Self { most: self.method.most_steps_behind_words(), ..self }
+        Self { most: self.method.most_steps(TUNING.most_steps_behind_words), ..self }
     }
 
     /// Takes a step that ends at `goal` at the latest, from which [`go_on`](Self::go_on) goes on.
@@ -173,7 +176,7 @@ impl<'s> Path<'s> {
                 _ if end == goal && step < self.h => self.h,
                 _ => self.run.next_length(step, ratio),
             };
-            let parts = self.run.parts(end, &self.sizes_of_lines());
+            let parts = if self.divides { self.run.parts(end, &self.sizes_of_lines()) } else { 1 };
             return Ok(PathStep { begin, end, event, parts });
         }
     }
@@ -386,7 +389,7 @@ impl<'s> Path<'s> {
         }
         if step.event.is_some() {
             self.event = step.end;
-            self.most = self.most.max(self.method.most_steps_with_events());
+            self.most = self.most.max(self.method.most_steps(TUNING.most_steps_with_events));
             self.run.accept_event(&mut self.closure, step.end);
         } else {
             self.run.accept(&mut self.closure, step.end);

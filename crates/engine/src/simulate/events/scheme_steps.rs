@@ -6,16 +6,15 @@
 //! Within the step the motion is the polynomial through the eight states that the levels have in common.
 
 use symdiff::jet::JetSpace;
-use symdiff::{Tile, math};
+use symdiff::{JetMemory, Tile, math};
 
 use super::level_stepper::LevelStepper;
 use super::stretched::SchemeMotion;
 use super::tuning::TUNING;
-use crate::numerics::{STEP_NODES, equispaced_weights};
+use crate::numerics::{STEP_NODES, equispaced_weights, largest};
 use crate::simulate::drive::{MotionSteps, weights};
-use crate::simulate::ensemble::{JetBox, JetStepper, assembled_jet};
-use crate::simulate::error::SimulationError;
-use crate::simulate::explicit::runge_kutta::before_event;
+use crate::simulate::ensemble::{JetBox, JetStepper};
+use crate::simulate::explicit::runge_kutta::{adapted_length, before_event};
 use crate::simulate::simulator::Simulator;
 use crate::simulate::step::{Counters, Stepper};
 
@@ -53,41 +52,36 @@ struct Level<S> {
 impl<'s> SchemeSteps<Stepper<'s>> {
     /// Of an assembled tile, on so many levels.
     pub fn of_lanes(simulator: &'s Simulator, start: &Tile, levels: usize) -> Self {
-        let layout = &simulator.start.layout;
-        let state = start.block(layout.q.start..layout.v.end).to_vec();
         let mut stepper = Stepper::new(&simulator.program, start);
         stepper.refine(true);
-        Self::of(simulator, (0..levels).map(|_| stepper.clone()), state)
+        Self::of(simulator, (0..levels).map(|_| stepper.clone()))
     }
 }
 
 impl<'s> SchemeSteps<JetStepper<'s>> {
-    /// Of a jet whose state is known, on so many levels.
-    ///
-    /// # Errors
-    /// Where the centre cannot be assembled.
+    /// Of a jet about an assembled centre, on so many levels.
     pub fn of_jet(
         simulator: &'s Simulator,
         space: &'s JetSpace,
         about: JetBox<'_>,
-        state: Vec<f64>,
+        center: &Tile,
+        start: &JetMemory,
         levels: usize,
-    ) -> Result<Self, SimulationError> {
-        let (assembled, start) = assembled_jet(simulator, space, about, 0.0)?;
+    ) -> Self {
         let stepper = |_| {
-            let mut stepper = JetStepper::new(simulator, space, about, &assembled, &start);
+            let mut stepper = JetStepper::new(simulator, space, about, center, start);
             stepper.center.refine(true);
             stepper
         };
-        Ok(Self::of(simulator, (0..levels).map(stepper), state))
+        Self::of(simulator, (0..levels).map(stepper))
     }
 }
 
 impl<S: LevelStepper> SchemeSteps<S> {
-    fn of(simulator: &Simulator, steppers: impl Iterator<Item = S>, state: Vec<f64>) -> Self {
+    fn of(simulator: &Simulator, steppers: impl Iterator<Item = S>) -> Self {
         let levels: Vec<Level<S>> =
             steppers.map(|stepper| Level { before: stepper.save(), stepper, length: f64::NAN }).collect();
-        let zero = vec![0.0; state.len()];
+        let zero = vec![0.0; levels.first().map_or(0, |level| level.stepper.motion().count())];
         Self {
             shift: simulator.program.coefficients.shift(),
             weights: weights(levels.len()),
@@ -95,7 +89,7 @@ impl<S: LevelStepper> SchemeSteps<S> {
             levels,
             time: 0.0,
             next: zero.clone(),
-            points: vec![state; STEP_NODES],
+            points: vec![zero.clone(); STEP_NODES],
             changes: vec![zero.clone(); STEP_NODES],
             judged: None,
             is_anew: true,
@@ -129,14 +123,14 @@ impl<S: LevelStepper> SchemeSteps<S> {
     /// Largest change of one line by the finest levels within the step, since its beginning.
     fn change(&self, line: usize) -> f64 {
         let begin = self.changes[0][line];
-        self.changes.iter().map(|own| (own[line] - begin).abs()).fold(0.0, larger)
+        largest(self.changes.iter().map(|own| own[line] - begin))
     }
 
     /// The last term of the polynomial through the states of a line.
     fn last_term(&self, line: usize) -> f64 {
         let last: f64 = self.points.iter().zip(BINOMIALS).map(|(point, weight)| weight * point[line]).sum();
         // Coefficient of the Chebyshev polynomial T₇ given the seventh difference: 7⁷/(7! 2¹³).
-        (823_543.0 / (5040.0 * 8192.0) * last).abs()
+        823_543.0 / (5040.0 * 8192.0) * last
     }
 }
 
@@ -152,9 +146,9 @@ struct Judged {
 /// Weights of the seventh difference.
 const BINOMIALS: [f64; STEP_NODES] = [-1.0, 7.0, -21.0, 35.0, -35.0, 21.0, -7.0, 1.0];
 
-/// Written so that NaN wins and stays.
-fn larger(so_far: f64, value: f64) -> f64 {
-    if value <= so_far || so_far.is_nan() { so_far } else { value }
+/// Adds a level's positions and velocities times a weight.
+fn add(weight: f64, stepper: &impl LevelStepper, to: &mut [f64]) {
+    to.iter_mut().zip(stepper.motion()).for_each(|(sum, value)| *sum += weight * value);
 }
 
 impl<M: SchemeMotion, S: LevelStepper> MotionSteps<M> for SchemeSteps<S> {
@@ -163,7 +157,12 @@ impl<M: SchemeMotion, S: LevelStepper> MotionSteps<M> for SchemeSteps<S> {
         self.points[0].copy_from_slice(state);
         motion.rate(time, state, &mut self.rates);
         let unknowns = motion.unknowns();
-        self.levels.iter_mut().for_each(|level| level.before.copy_from_slice(&unknowns));
+        for level in &mut self.levels {
+            level.before.copy_from_slice(&unknowns);
+            if let Some(pace) = motion.pace() {
+                level.stepper.set_pace(pace);
+            }
+        }
         self.changes[0].fill(0.0);
         if let Some(judged) = &mut self.judged {
             judged.before.fill(0.0);
@@ -191,12 +190,8 @@ impl<M: SchemeMotion, S: LevelStepper> MotionSteps<M> for SchemeSteps<S> {
         if let Some(judged) = &mut self.judged {
             judged.changes.fill(0.0);
         }
-        let pace = motion.pace();
         for (number, level) in self.levels.iter_mut().enumerate() {
             let Level { stepper, before, length: before_length } = level;
-            if let Some(pace) = pace {
-                stepper.set_pace(pace);
-            }
             stepper.restart(before, *before_length);
             let steps = 1 << number;
             let h = length / f64::from(steps);
@@ -210,11 +205,11 @@ impl<M: SchemeMotion, S: LevelStepper> MotionSteps<M> for SchemeSteps<S> {
                     let time = if is_last { end } else { self.time + done * length };
                     stepper.advance(h, time);
                 }
-                stepper.add_motion(weight, point);
-                stepper.add_motion(change, changed);
+                add(weight, stepper, point);
+                add(change, stepper, changed);
             }
             if let Some(judged) = &mut self.judged {
-                stepper.add_motion(beyond(&judged.weights), &mut judged.changes);
+                add(beyond(&judged.weights), stepper, &mut judged.changes);
             }
         }
         self.next.copy_from_slice(&self.points[STEP_NODES - 1]);
@@ -224,15 +219,15 @@ impl<M: SchemeMotion, S: LevelStepper> MotionSteps<M> for SchemeSteps<S> {
     }
 
     fn ratio(&self, _: f64, sizes: &[f64], tolerance: f64) -> f64 {
-        let errors = (0..sizes.len()).map(|line| larger(self.change(line), self.last_term(line)));
-        let ratio = errors.zip(sizes).map(|(error, size)| error / (tolerance * size)).fold(0.0, larger);
+        let errors = (0..sizes.len()).map(|line| largest([self.change(line), self.last_term(line)]));
+        let ratio = largest(errors.zip(sizes).map(|(error, size)| error / (tolerance * size)));
         if ratio.is_nan() { f64::INFINITY } else { ratio }
     }
 
     fn parts(&self, end: f64, sizes: &[f64]) -> usize {
         let Some(Judged { weights, allowed, before, changes }) = &self.judged else { return 1 };
-        let of_line = |((change, before), size): ((&f64, &f64), &f64)| (change - before).abs() / size;
-        let error = changes.iter().zip(before).zip(sizes).map(of_line).fold(0.0, larger);
+        let of_line = |((change, before), size): ((&f64, &f64), &f64)| (change - before) / size;
+        let error = largest(changes.iter().zip(before).zip(sizes).map(of_line));
         let ratio = error / (allowed * (end - self.time));
         (math::pow(ratio, 1.0 / (weights.len() + 1) as f64).ceil() as usize).clamp(1, TUNING.most_parts_of_step)
     }
@@ -248,10 +243,7 @@ impl<M: SchemeMotion, S: LevelStepper> MotionSteps<M> for SchemeSteps<S> {
     }
 
     fn next_length(&self, step: f64, ratio: f64) -> f64 {
-        let order = self.levels.len() as f64 + 1.0;
-        let factor = TUNING.safety_of_levels * math::pow(ratio.max(f64::MIN_POSITIVE), -1.0 / order);
-        let largest = if ratio > 1.0 { TUNING.safety_of_levels } else { TUNING.largest_factor_of_levels };
-        step * if ratio.is_finite() { factor.clamp(TUNING.least_factor_of_levels, largest) } else { TUNING.least_share }
+        adapted_length(step, ratio, self.levels.len() + 1, TUNING.largest_factor_of_levels)
     }
 
     fn prepare_dense(&mut self, _: &mut M, _: f64) {}

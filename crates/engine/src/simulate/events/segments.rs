@@ -77,27 +77,11 @@ pub enum SegmentMethod {
 }
 
 impl SegmentMethod {
-    /// Most steps that are tried of a motion without an event.
-    pub fn most_steps(self) -> usize {
+    /// Most steps that are tried, given those of the explicit method: of the scheme each is many.
+    pub fn most_steps(self, of_explicit: usize) -> usize {
         match self {
             Self::Scheme { .. } => TUNING.most_steps_of_scheme,
-            _ => TUNING.most_steps,
-        }
-    }
-
-    /// The same of a motion with events.
-    pub fn most_steps_with_events(self) -> usize {
-        match self {
-            Self::Scheme { .. } => TUNING.most_steps_of_scheme,
-            _ => TUNING.most_steps_with_events,
-        }
-    }
-
-    /// The same where words end.
-    pub fn most_steps_behind_words(self) -> usize {
-        match self {
-            Self::Scheme { .. } => TUNING.most_steps_of_scheme,
-            _ => TUNING.most_steps_behind_words,
+            Self::Explicit | Self::ExplicitFromRest => of_explicit,
         }
     }
 }

@@ -63,13 +63,9 @@ tuning! {
         error_of_scheme: f64 = 1e-8, moves "the steps of stiff motions with events";
         /// Error of a step by which a stiff motion is first searched for events.
         rough_error: f64 = 1e-4, moves "which motions are cut at events";
-        /// Safety factor on the length of the next step of the scheme.
-        safety_of_levels: f64 = 0.9, moves "the steps of stiff motions with events";
         /// Rounding of positions in steps from rest and in those of the scheme, in units of rounding.
         rounding_of_steps: f64 = 64.0, moves "the steps of stiff motions with events";
-        /// Least change of its length.
-        least_factor_of_levels: f64 = 0.2, moves "the steps of stiff motions with events";
-        /// Largest change of its length.
+        /// Largest factor from one step of the scheme to the next.
         largest_factor_of_levels: f64 = 3.0, moves "the steps of stiff motions with events";
         /// Of its length, a step that passes over what a force does in space is tried with this share.
         passing_share: f64 = 0.5, moves "the steps of motions with events";

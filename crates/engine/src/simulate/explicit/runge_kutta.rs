@@ -33,14 +33,19 @@ pub(in crate::simulate) struct StepError {
     pub stiffness: f64,
 }
 
-/// Length of the next step, s, given that of the one that was tried, and its error over the allowance: of the same
-/// step once more where it is more than 1.
+/// Length of the next step of this method, s.
 pub(in crate::simulate) fn next_length(step: f64, ratio: f64) -> f64 {
-    let factor = TUNING.safety * math::pow(ratio.max(TUNING.least_ratio), -0.125);
+    adapted_length(step, ratio, 8, TUNING.largest_factor)
+}
+
+/// Length of the next step, s, given that of the one that was tried, and its error over the allowance: of the same
+/// step once more where it is more than 1. The error is of an order in the length, which grows by `largest` at most.
+pub(in crate::simulate) fn adapted_length(step: f64, ratio: f64, order: usize, largest: f64) -> f64 {
+    let factor = TUNING.safety * math::pow(ratio.max(TUNING.least_ratio), -1.0 / order as f64);
     step * match ratio {
         ratio if ratio > 1.0 && ratio.is_infinite() => TUNING.least_factor,
         ratio if ratio > 1.0 => factor.clamp(TUNING.least_factor, TUNING.safety),
-        _ => factor.clamp(TUNING.least_factor, TUNING.largest_factor),
+        _ => factor.clamp(TUNING.least_factor, largest),
     }
 }
 
