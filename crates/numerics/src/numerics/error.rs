@@ -83,10 +83,11 @@ impl BandError {
         Self::of(surrogate, ranges, time, span, tolerance, tolerance.is_none())
     }
 
-    /// The same where the surrogate's errors are told row by row: a large error within a contact says nothing of the
-    /// rows behind it.
+    /// The same where the surrogate's errors are told row by row, at times beside it too: a large error within a contact
+    /// says nothing of the rows before and behind it.
     pub fn told(ranges: &[Range], surrogate: &[f64], time: &[f64], span: f64, tolerance: Option<f64>) -> Self {
-        Self::of(held_up(surrogate, SAFETY_OF_SURROGATE, 0.0), ranges, time, span, tolerance, false)
+        let surrogate = surrogate.iter().map(|error| SAFETY_OF_SURROGATE * error).collect();
+        Self::of(surrogate, ranges, time, span, tolerance, false)
     }
 
     /// `lasts`: whether a row that is lost loses all behind it.

@@ -49,6 +49,15 @@ pub struct SegmentMotions {
     pub nodes: Vec<Vec<Vec<f64>>>,
 }
 
+/// Motions of samples at a time on the branch of a segment.
+#[derive(Clone, Debug)]
+pub struct BranchMotion {
+    /// Positions and velocities, line by line, sample by sample.
+    pub values: Vec<f64>,
+    /// How far each line is off at most, where samples are beyond the segment.
+    pub doubts: Vec<f64>,
+}
+
 impl CutMotions {
     /// Adds other samples, which follow these.
     pub fn append(&mut self, other: Self, own: usize) {
@@ -75,6 +84,45 @@ impl SegmentMotions {
             times: self.times.iter().map(|times| pick(times)).collect(),
             nodes: self.nodes.iter().map(|nodes| nodes.iter().map(of_node).collect()).collect(),
         }
+    }
+
+    /// Positions and velocities at a time on a segment's branch, which goes on beyond its ends; `None` where a sample is
+    /// beyond all steps there by more than so many times their length.
+    pub fn at(&self, segment: usize, time: f64, most_beyond: f64) -> Option<BranchMotion> {
+        let (steps, count) = (&self.steps[segment], self.samples.len());
+        let lines = self.nodes[segment].first().map_or(0, |node| node.len() / count.max(1));
+        let (mut values, mut doubts) = (vec![0.0; lines * count], vec![0.0_f64; lines]);
+        let nodes = step_nodes();
+        for sample in 0..count {
+            let [begin, end] = [segment, segment + 1].map(|number| self.times[number][sample]);
+            let share = (time - begin) / (end - begin);
+            let (mut step, mut weights) = step_weights(steps, share);
+            let mut others = None;
+            if !(0.0..=1.0).contains(&share) {
+                // Steps are shorter beside events: the longest reaches farthest beyond.
+                let local;
+                (step, local) = nearest_step(steps, share);
+                if !(-most_beyond..=1.0 + most_beyond).contains(&local) {
+                    return None;
+                }
+                let of_all = lagrange_weights(&nodes, local);
+                weights.copy_from_slice(&of_all);
+                // The polynomial without the farthest node tells how far that through all is off.
+                let first = usize::from(local > 0.0);
+                others = Some((first, lagrange_weights(&nodes[first..first + STEP_NODES - 1], local)));
+            }
+            let motion = &self.nodes[segment][step * (STEP_NODES - 1)..][..STEP_NODES];
+            for line in 0..lines {
+                let at = line * count + sample;
+                let value: f64 = weights.iter().zip(motion).map(|(weight, node)| weight * node[at]).sum();
+                if let Some((first, weights)) = &others {
+                    let other: f64 = weights.iter().zip(&motion[*first..]).map(|(weight, node)| weight * node[at]).sum();
+                    doubts[line] = doubts[line].max((value - other).abs());
+                }
+                values[at] = value;
+            }
+        }
+        Some(BranchMotion { values, doubts })
     }
 
     /// Largest size of each line over all nodes and samples.
@@ -153,6 +201,24 @@ pub fn step_weights(ends: &[f64], share: f64) -> (usize, [f64; STEP_NODES]) {
     let sum: f64 = weights.iter().sum();
     weights.iter_mut().for_each(|weight| *weight /= sum);
     (step, weights)
+}
+
+/// The step of a segment that is least beyond a share, in its lengths, and the place of the share in it.
+pub fn nearest_step(ends: &[f64], share: f64) -> (usize, f64) {
+    let local = |step: usize| {
+        let begin = step.checked_sub(1).map_or(0.0, |before| ends[before]);
+        (share - begin) / (ends[step] - begin)
+    };
+    let beyond = |step: &usize| (local(*step) - 0.5).abs();
+    let better = |a: usize, b: usize| if beyond(&b) < beyond(&a) { b } else { a };
+    let step = (0..ends.len()).reduce(better).unwrap_or(0);
+    (step, local(step))
+}
+
+/// Weights of values at nodes in the polynomial through them.
+fn lagrange_weights(nodes: &[f64], at: f64) -> Vec<f64> {
+    let weight = |own: &f64| nodes.iter().filter(|node| *node != own).map(|node| (at - node) / (own - node)).product();
+    nodes.iter().map(weight).collect()
 }
 
 /// Weights of values at `N` points that divide a step into equal parts, at a share of it; a share beyond the step's

@@ -5,16 +5,17 @@
 //! programme in a trust region that is as narrow across these surfaces as it has to be: the steepest way that leaves
 //! neither the box nor the segment. Then it is moved to the surface that it was to reach.
 
-use super::ends::Ends;
-use super::held::{Corner, Looked};
+use super::ends::{Ends, HeldCorner};
+use super::held::{Corner, Looked, Misses};
 use super::is_corner;
 use super::row::SegmentRow;
 use super::seeds::Lattice;
 use super::surrogate::Point;
 use super::tuning::TUNING;
-use crate::numerics::{Extent, Range};
+use crate::numerics::{Extent, Range, extremes_from};
 
 /// A place on the way to an extreme.
+#[derive(Clone)]
 struct Climb {
     output: usize,
     /// −1 for the least value, 1 for the largest.
@@ -42,29 +43,20 @@ struct Move {
     of_margins: Vec<Vec<f64>>,
 }
 
-/// The outputs' ranges, with the places of their ends and their errors.
-pub(super) fn ends(row: &SegmentRow, lattice: &Lattice) -> Vec<Ends> {
+/// The outputs' ranges, with the places of their ends and their errors; samples tell of their misses at corners.
+pub(super) fn ends(row: &SegmentRow, lattice: &Lattice, misses: Option<&Misses>) -> Vec<Ends> {
     let (seeds, mut climbs) = begun(row, lattice);
     for _ in 0..TUNING.moves {
         if !step(row, &mut climbs) {
             break;
         }
     }
-    TUNING.shares_of_ridge.iter().for_each(|&share| across(row, &mut climbs, share));
-    let best = |output: usize, sign: f64| {
-        let own = climbs.iter().filter(|climb| climb.output == output && climb.sign == sign);
-        own.reduce(|a, b| if sign * b.value > sign * a.value { b } else { a })
-    };
-    let of_outputs: Vec<[Option<&Climb>; 2]> =
-        (0..row.outputs).map(|output| [best(output, -1.0), best(output, 1.0)]).collect();
-    let extent = |found: &[Option<&Climb>; 2]| match found {
-        [Some(least), Some(most)] => {
-            let range = Range { lower: least.value, upper: most.value };
-            Extent::at(range, 0.0, [least, most].map(|climb| climb.point.xi.clone()))
-        }
-        _ => Extent::unknown(row.domain.dimension()),
-    };
-    let extents: Vec<Extent> = of_outputs.iter().map(extent).collect();
+    if !row.is_common() {
+        TUNING.shares_of_ridge.iter().for_each(|&share| across(row, &mut climbs, share));
+    }
+    polish(row, &mut climbs);
+    let of_outputs: Vec<[Option<&Climb>; 2]> = (0..row.outputs).map(|output| best(&climbs, output)).collect();
+    let extents: Vec<Extent> = of_outputs.iter().map(|found| extent(row, *found)).collect();
     let places = extents.iter().flat_map(|extent| extent.places.iter().cloned()).collect();
     let points = row.piece.surrogate.points(places).into_iter().zip(of_outputs.iter().flatten());
     let in_segment = |(point, climb): (Point, &Option<&Climb>)| {
@@ -74,22 +66,77 @@ pub(super) fn ends(row: &SegmentRow, lattice: &Lattice) -> Vec<Ends> {
     let errors = row.errors(&places, &row.outputs_in(&places));
     let count = 2 * row.outputs;
     let errors = |output: usize| [0, 1].map(|end| errors[output * count + 2 * output + end]);
-    let has_corners = of_outputs.iter().flatten().flatten().any(|climb| is_corner(&climb.point.xi));
+    let corners: Vec<[Option<Climb>; 2]> =
+        of_outputs.iter().map(|ends| ends.map(|climb| climb.and_then(|climb| corner(row, climb)))).collect();
+    let has_corners = corners.iter().flatten().any(Option::is_some);
     let ends = || climbs.iter().filter(|climb| !is_corner(&climb.point.xi)).map(|own| (own.segment, own.point.clone()));
     let looked = has_corners.then(|| Looked::at(row, seeds.into_iter().chain(ends()).collect()));
-    let is_held = |climb: Option<&Climb>, error: f64| {
-        let (Some(looked), Some(climb)) = (&looked, climb.filter(|climb| is_corner(&climb.point.xi))) else {
-            return false;
-        };
-        let Climb { output, sign, segment, value, .. } = *climb;
-        looked.are_within(row, &Corner { output, sign, segment, value, error, point: &climb.point })
+    let held = |climb: &Option<Climb>, error: f64| {
+        let Climb { output, sign, segment, value, point, .. } = climb.as_ref()?;
+        let corner = Corner { output: *output, sign: *sign, segment: *segment, value: *value, error, point };
+        let beyond = looked.as_ref()?.beyond(row, &corner, misses);
+        (beyond < error).then(|| HeldCorner { xi: point.xi.clone(), beyond })
     };
-    let all = extents.into_iter().zip(&of_outputs).enumerate();
+    let all = extents.into_iter().zip(&corners).enumerate();
     all.map(|(output, (extent, found))| {
         let errors = errors(output);
-        Ends { extent, errors, is_corner: [0, 1].map(|end| is_held(found[end], errors[end])) }
+        Ends { extent, errors, corners: [0, 1].map(|end| held(&found[end], errors[end])) }
     })
     .collect()
+}
+
+/// The corner of the box that an end may be at: of parameters that change next to nothing any value is as good.
+fn corner(row: &SegmentRow, climb: &Climb) -> Option<Climb> {
+    let mut own = climb.clone();
+    for axis in 0..own.point.xi.len() {
+        if own.point.xi[axis].abs() == 1.0 {
+            continue;
+        }
+        let moved = [-1.0, 1.0].map(|xi| [&own.point.xi[..axis], &[xi], &own.point.xi[axis + 1..]].concat());
+        let points = row.piece.surrogate.points(moved.to_vec());
+        let at: Vec<(&Point, usize, f64)> = points.iter().map(|point| (point, own.segment, row.time)).collect();
+        let values = row.outputs_on(&at);
+        let height = |end: usize| own.sign * values[own.output * 2 + end];
+        let end = usize::from(height(1) > height(0));
+        (own.value, own.point) = (values[own.output * 2 + end], points[end].clone());
+    }
+    let in_segment = own.point.segment(row.time) == own.segment || climb.point.xi == own.point.xi;
+    let inside = climb.point.xi == own.point.xi || own.point.is_inside();
+    (in_segment && inside).then_some(own)
+}
+
+/// The best climbs for both ends of an output.
+fn best(climbs: &[Climb], output: usize) -> [Option<&Climb>; 2] {
+    [-1.0, 1.0].map(|sign| {
+        let own = climbs.iter().filter(|climb| climb.output == output && climb.sign == sign);
+        own.reduce(|a, b| if sign * b.value > sign * a.value { b } else { a })
+    })
+}
+
+/// The range that two climbs have found.
+fn extent(row: &SegmentRow, found: [Option<&Climb>; 2]) -> Extent {
+    let [Some(least), Some(most)] = found else { return Extent::unknown(row.domain.dimension()) };
+    let range = Range { lower: least.value, upper: most.value };
+    Extent::at(range, 0.0, [least, most].map(|climb| climb.point.xi.clone()))
+}
+
+/// Adds where quadratics go on from the best climbs: along a curved ridge linear programmes end early.
+fn polish(row: &SegmentRow, climbs: &mut Vec<Climb>) {
+    let known: Vec<Extent> = (0..row.outputs).map(|output| extent(row, best(climbs, output))).collect();
+    let polished = extremes_from(&known, |points| {
+        let points = row.piece.surrogate.points(points.to_vec());
+        let values = row.outputs_at(&points).into_iter().enumerate();
+        values.map(|(at, value)| if points[at % points.len()].is_inside() { value } else { f64::NAN }).collect()
+    });
+    for (output, (known, found)) in known.into_iter().zip(polished).enumerate() {
+        let better = [found.range.lower < known.range.lower, found.range.upper > known.range.upper];
+        let values = [found.range.lower, found.range.upper];
+        for (end, xi) in found.places.into_iter().enumerate().filter(|(end, _)| better[*end]) {
+            let point = row.piece.surrogate.points(vec![xi]).swap_remove(0);
+            let (segment, sign) = (point.segment(row.time), [-1.0, 1.0][end]);
+            climbs.push(Climb { output, sign, segment, point, value: values[end], radius: 0.0, of_share: 0.0 });
+        }
+    }
 }
 
 /// Places that are looked at, each in its segment, and climbs from the best of them.
@@ -149,7 +196,7 @@ fn begun(row: &SegmentRow, lattice: &Lattice) -> (Vec<(usize, Point)>, Vec<Climb
                     point,
                     value: values[seed],
                     radius: TUNING.radius,
-                    of_share: TUNING.radius_of_share,
+                    of_share: widest_share(row),
                 }
             }));
         }
@@ -210,7 +257,7 @@ fn step(row: &SegmentRow, climbs: &mut [Climb]) -> bool {
         let mut moved = false;
         for ((climb, to), point) in going.iter().zip(&mut moves).zip(&points) {
             let lacks = to.share - climb.share(point, row.time);
-            moved |= lacks.abs() > TUNING.missed && back(&mut to.xi, &to.slopes, lacks);
+            moved |= !row.is_common() && lacks.abs() > TUNING.missed && back(&mut to.xi, &to.slopes, lacks);
             for (slopes, margin) in to.of_margins.iter().zip(&point.margins) {
                 moved |= *margin < 0.0 && back(&mut to.xi, slopes, -TUNING.moved_back * margin);
             }
@@ -234,7 +281,7 @@ fn step(row: &SegmentRow, climbs: &mut [Climb]) -> bool {
         }
         let (of_xi, of_share) = if rises { TUNING.grows } else { TUNING.shrinks };
         (climb.radius, climb.of_share) =
-            ((of_xi * climb.radius).min(1.0), (of_share * climb.of_share).min(TUNING.radius_of_share));
+            ((of_xi * climb.radius).min(1.0), (of_share * climb.of_share).min(widest_share(row)));
     }
     true
 }
@@ -296,6 +343,11 @@ fn across(row: &SegmentRow, climbs: &mut [Climb], share: f64) {
             (climb.value, climb.point) = (climb.sign * value, point);
         }
     }
+}
+
+/// The largest radius of trust regions in the share of the segment: any, where no event passes through the part.
+fn widest_share(row: &SegmentRow) -> f64 {
+    if row.is_common() { f64::INFINITY } else { TUNING.radius_of_share }
 }
 
 /// A difference that stays in the box.

@@ -8,8 +8,16 @@ pub(super) struct Ends {
     pub extent: Extent,
     /// How far the polynomials' errors move either end.
     pub errors: [f64; 2],
-    /// Whether either end is at a corner of the box, however the polynomials err.
-    pub is_corner: [bool; 2],
+    /// Of either end, the corner of the box that it is at, however the polynomials err.
+    pub corners: [Option<HeldCorner>; 2],
+}
+
+/// A corner of the box at which an output is largest, or least.
+#[derive(Clone, Debug)]
+pub(super) struct HeldCorner {
+    pub xi: Vec<f64>,
+    /// By how much other places may be beyond it.
+    pub beyond: f64,
 }
 
 /// A place that is looked at beside an end.
@@ -21,25 +29,33 @@ pub(super) struct Rival {
     pub error: f64,
     /// By how many times themselves errors change on the way to the end's place.
     pub change: f64,
+    /// By how much they do as samples tell that differ in one parameter.
+    pub along: Option<f64>,
 }
 
 impl Rival {
-    /// Whether it is within an end that errors move so far.
-    pub fn stays_within(&self, error: f64) -> bool {
+    /// By how much it may be beyond an end that errors move so far.
+    pub fn beyond(&self, error: f64) -> f64 {
         let apart = SAFETY_OF_SURROGATE * (error + self.error);
         let near = SAFETY_OF_SURROGATE * self.change * error.max(self.error);
-        self.within >= near.min(apart)
+        let along = SAFETY_OF_SURROGATE * self.along.unwrap_or(f64::INFINITY);
+        let beyond = near.min(apart).min(along) - self.within;
+        // What is not known may be anywhere. All errors get their safety in the end.
+        if beyond.is_nan() { f64::INFINITY } else { beyond.max(0.0) / SAFETY_OF_SURROGATE }
     }
 }
 
 impl Ends {
     /// Takes simulated values at corners for ends that are there.
     pub fn hold(&mut self, simulated: impl Fn(&[f64]) -> Option<f64>) {
-        let own = |end: usize| if self.is_corner[end] { simulated(&self.extent.places[end]) } else { None };
-        let [lower, upper] = [own(0), own(1)];
-        self.errors = [lower.map_or(self.errors[0], |_| 0.0), upper.map_or(self.errors[1], |_| 0.0)];
-        let Range { lower: low, upper: high } = self.extent.range;
-        self.extent.range = Range { lower: lower.unwrap_or(low), upper: upper.unwrap_or(high) };
+        for end in 0..2 {
+            let Some(HeldCorner { xi, beyond }) = &self.corners[end] else { continue };
+            let Some(value) = simulated(xi) else { continue };
+            self.errors[end] = *beyond;
+            self.extent.places[end].clone_from(xi);
+            let range = &mut self.extent.range;
+            *(if end == 0 { &mut range.lower } else { &mut range.upper }) = value;
+        }
     }
 
     /// Of two parts together: the part that is not the outermost may reach further by its error.
@@ -62,26 +78,31 @@ impl Ends {
 mod tests {
     use super::*;
 
-    fn ends(lower: f64, upper: f64, errors: [f64; 2], is_corner: [bool; 2]) -> Ends {
-        let extent = Extent::at(Range { lower, upper }, 0.0, [vec![-1.0], vec![1.0]]);
-        Ends { extent, errors, is_corner }
+    fn ends(lower: f64, upper: f64, errors: [f64; 2], corner: Option<HeldCorner>) -> Ends {
+        let extent = Extent::at(Range { lower, upper }, 0.0, [vec![-1.0], vec![0.9]]);
+        Ends { extent, errors, corners: [None, corner] }
     }
 
     #[test]
     fn a_corner_has_the_simulated_value() {
-        let mut own = ends(0.0, 1.0, [0.1, 0.2], [false, true]);
+        let mut own = ends(0.0, 1.0, [0.1, 0.2], Some(HeldCorner { xi: vec![1.0], beyond: 0.01 }));
         own.hold(|xi| Some(if xi[0] > 0.0 { 1.05 } else { 0.3 }));
-        assert_eq!((own.extent.range, own.errors), (Range { lower: 0.0, upper: 1.05 }, [0.1, 0.0]));
-        let joined = own.or(ends(0.5, 1.0, [0.0, 0.25], [false; 2]));
+        assert_eq!((own.extent.range, own.errors), (Range { lower: 0.0, upper: 1.05 }, [0.1, 0.01]));
+        assert_eq!(own.extent.places[1], [1.0]);
+        let joined = own.or(ends(0.5, 1.0, [0.0, 0.25], None));
         // The other part may reach 1.25.
         assert!((joined.errors[1] - 0.2).abs() < 1e-15 && joined.errors[0] == 0.1);
     }
 
     #[test]
     fn a_place_is_within_where_errors_cannot_lift_it() {
-        let rival = |within: f64, change: f64| Rival { within, error: 1e-3, change };
-        assert!(rival(5e-3, f64::INFINITY).stays_within(1e-3) && !rival(3e-3, f64::INFINITY).stays_within(1e-3));
-        assert!(rival(1e-4, 0.04).stays_within(1e-3) && !rival(1e-4, 0.06).stays_within(1e-3));
-        assert!(!rival(3e-3, 36.0).stays_within(1e-3));
+        let beyond = |within: f64, change: f64, along: Option<f64>| {
+            Rival { within, error: 1e-3, change, along }.beyond(1e-3)
+        };
+        assert!(beyond(5e-3, f64::INFINITY, None) == 0.0);
+        assert!((beyond(3e-3, f64::INFINITY, None) - 5e-4).abs() < 1e-15);
+        assert!(beyond(1e-4, 0.04, None) == 0.0 && beyond(1e-4, 0.06, None) > 0.0);
+        assert!((beyond(-1e-9, f64::INFINITY, Some(1e-6)) - 1.0005e-6).abs() < 1e-15);
+        assert!(beyond(f64::NAN, 0.0, None) == f64::INFINITY);
     }
 }

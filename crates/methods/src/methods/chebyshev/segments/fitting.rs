@@ -6,7 +6,7 @@
 
 use super::basis::{Basis, Fitted, Level};
 use super::parts::{Samples, WordPart};
-use super::piece::{FittedMotions, Piece, ValidationMotions};
+use super::piece::{Piece, PieceMotions};
 use super::surrogate::SegmentSurrogate;
 use super::tuning::TUNING;
 use crate::methods::ensemble::{Ensemble, EnsembleError};
@@ -141,9 +141,11 @@ impl Fitting<'_> {
             let left_out = fits(values).into_iter().flat_map(|(_, left_out)| left_out);
             values.iter().zip(left_out).map(|(own, left_out)| own - left_out).collect()
         };
-        let fitted = FittedMotions { motions: &motions, predicted: &motions.mapped(without) };
-        let held_out = ValidationMotions { points: self.points, motions: &self.direct.words[part.word] };
-        Some((misses, Piece::fitted(surrogate, xi, fitted, held_out)))
+        let predicted = motions.mapped(without);
+        let held_out = self.direct.words[part.word].clone();
+        let points = held_out.samples.iter().map(|&sample| self.points[sample].clone()).collect();
+        let motions = PieceMotions { fitted: motions, points, held_out };
+        Some((misses, Piece::fitted(surrogate, xi, motions, &predicted)))
     }
 }
 
@@ -311,7 +313,7 @@ mod tests {
                 let [point] = &piece.surrogate.points(vec![xi.clone()])[..] else { panic!() };
                 let (_, times, _) = throws.cut(5.0 + 0.5 * xi[0]);
                 assert_eq!(times.len(), point.times.len(), "at {xi:?}");
-                let stated = &piece.errors.times;
+                let stated = &piece.errors().times;
                 for ((own, truth), stated) in point.times.iter().zip(times).zip(stated) {
                     assert!((own - truth).abs() <= 3.0 * stated + 1e-12, "{own} {truth} {stated} at {xi:?}");
                 }

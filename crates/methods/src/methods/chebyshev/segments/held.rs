@@ -1,10 +1,10 @@
-//! Whether an end is at a corner of the box, however the polynomials err.
+//! How far another place may pass an end at a corner of the box, however the polynomials err.
 
 use super::ends::Rival;
 use super::row::SegmentRow;
 use super::surrogate::Point;
 use super::tuning::TUNING;
-use crate::numerics::{STEP_NODES, largest};
+use crate::numerics::{Range, SAFETY_OF_SURROGATE, STEP_NODES, largest};
 
 /// An end of an output's range that is at a corner.
 pub(super) struct Corner<'c> {
@@ -18,11 +18,130 @@ pub(super) struct Corner<'c> {
     pub error: f64,
 }
 
+/// Samples that differ in one parameter only.
+pub(super) struct AxisLines<'p> {
+    points: &'p [Vec<f64>],
+    /// By axis, the samples on each line along it.
+    of_axes: Vec<Vec<Vec<usize>>>,
+    /// Those at −1, 0 and 1 along all axes, the first axis fastest; none where one of them is missing.
+    lattice: Vec<usize>,
+}
+
+/// By how much polynomials miss such samples in a row.
+pub(super) struct Misses<'l> {
+    lines: &'l AxisLines<'l>,
+    /// Predicted less simulated outputs (output, sample); NaN at samples that are not in the part.
+    values: Vec<f64>,
+}
+
+/// What an output is missed by: a parabola along each axis through the misses on the lattice, and the rest.
+struct Missed<'m> {
+    /// Misses on the lattice; none where parabolas do not tell those of other samples.
+    on_lattice: Vec<f64>,
+    /// How far other samples are from the parabolas.
+    rest: f64,
+    misses: &'m Misses<'m>,
+    output: usize,
+}
+
 /// Places that are looked at in their segments, with the outputs there and how far errors move these (output, place).
 pub(super) struct Looked {
     places: Vec<(usize, Point)>,
     values: Vec<f64>,
     errors: Vec<f64>,
+}
+
+impl<'p> AxisLines<'p> {
+    pub fn new(points: &'p [Vec<f64>]) -> Self {
+        let k = points.first().map_or(0, Vec::len);
+        let along = |axis: usize| {
+            let others = |xi: &[f64]| [&xi[..axis], &xi[axis + 1..]].concat();
+            let mut lines: Vec<(Vec<f64>, Vec<usize>)> = Vec::new();
+            for (index, xi) in points.iter().enumerate() {
+                let own = others(xi);
+                match lines.iter_mut().find(|(others, _)| *others == own) {
+                    Some((_, line)) => line.push(index),
+                    None => lines.push((own, vec![index])),
+                }
+            }
+            lines.into_iter().map(|(_, line)| line).filter(|line| line.len() > 1).collect()
+        };
+        let count = 3_usize.checked_pow(k as u32).filter(|count| *count <= points.len()).unwrap_or(0);
+        let on_lattice = |index: usize| {
+            let xi: Vec<f64> = (0..k).map(|axis| (index / 3_usize.pow(axis as u32) % 3) as f64 - 1.0).collect();
+            points.iter().position(|point| *point == xi)
+        };
+        let lattice = (0..count).map(on_lattice).collect::<Option<Vec<usize>>>().unwrap_or_default();
+        Self { points, of_axes: (0..k).map(along).collect(), lattice }
+    }
+}
+
+impl<'l> Misses<'l> {
+    /// In a row, whose outputs at the samples (output, sample) have been simulated; `at` are their points.
+    pub fn new(lines: &'l AxisLines<'l>, row: &SegmentRow, at: &[Point], simulated: impl Fn(usize) -> Vec<f64>) -> Self {
+        let predicted = row.outputs_at(at);
+        let of_output = |output: usize| {
+            let own = predicted[output * at.len()..][..at.len()].iter().zip(simulated(output)).zip(at);
+            own.map(|((own, value), point)| if point.is_inside() { own - value } else { f64::NAN }).collect::<Vec<_>>()
+        };
+        Self { lines, values: (0..row.outputs).flat_map(of_output).collect() }
+    }
+
+    /// What an output is missed by, by no more than this error.
+    fn of(&self, output: usize, error: f64) -> Missed<'_> {
+        let lattice = &self.lines.lattice;
+        let count = self.lines.points.len();
+        let values = &self.values[output * count..][..count];
+        let whole = Missed { on_lattice: Vec::new(), rest: error, misses: self, output };
+        let on_lattice: Vec<f64> = lattice.iter().map(|&sample| values[sample]).collect();
+        if on_lattice.is_empty() || !on_lattice.iter().all(|miss| miss.is_finite()) {
+            return whole;
+        }
+        let parted = Missed { on_lattice, ..whole };
+        let others: Vec<usize> =
+            (0..count).filter(|sample| !lattice.contains(sample) && values[*sample].is_finite()).collect();
+        let rest = largest(others.iter().map(|&sample| values[sample] - parted.parabolas(&self.lines.points[sample])));
+        let whole = largest(others.iter().map(|&sample| values[sample]));
+        let on_lattice = if rest < whole && rest < error { parted.on_lattice } else { Vec::new() };
+        let rest = if on_lattice.is_empty() { error } else { rest };
+        Missed { on_lattice, rest, misses: self, output }
+    }
+
+    /// By how much what an output is missed by changes along an axis, at most; `None` where no line through a corner
+    /// tells.
+    fn along(&self, output: usize, axis: usize, corner: &[f64]) -> Option<f64> {
+        let count = self.lines.points.len();
+        let values = &self.values[output * count..][..count];
+        let known = |line: &Vec<usize>| -> Vec<usize> {
+            line.iter().copied().filter(|&sample| values[sample].is_finite()).collect()
+        };
+        let lines: Vec<Vec<usize>> =
+            self.lines.of_axes[axis].iter().map(known).filter(|line| line.len() > 1).collect();
+        let is_told = lines.iter().flatten().any(|&sample| self.lines.points[sample] == corner);
+        let range = |line: &Vec<usize>| Range::of(&line.iter().map(|&sample| values[sample]).collect::<Vec<_>>()).width();
+        is_told.then(|| largest(lines.iter().map(range)))
+    }
+}
+
+impl Missed<'_> {
+    /// The parabolas at some ξ.
+    fn parabolas(&self, xi: &[f64]) -> f64 {
+        let weight = |index: usize| -> f64 {
+            let of_axis = |(axis, &x): (usize, &f64)| match index / 3_usize.pow(axis as u32) % 3 {
+                0 => 0.5 * x * (x - 1.0),
+                1 => 1.0 - x * x,
+                _ => 0.5 * x * (x + 1.0),
+            };
+            xi.iter().enumerate().map(of_axis).product()
+        };
+        self.on_lattice.iter().enumerate().map(|(index, miss)| weight(index) * miss).sum()
+    }
+
+    /// By how much the rest changes along an axis, at most.
+    fn along(&self, axis: usize, corner: &[f64]) -> Option<f64> {
+        let along = self.misses.along(self.output, axis, corner);
+        if self.on_lattice.is_empty() { along } else { Some(along.map_or(self.rest, |along| along.min(self.rest))) }
+    }
 }
 
 impl Looked {
@@ -32,26 +151,42 @@ impl Looked {
         Self { places, values, errors }
     }
 
-    /// Whether all places are within a corner, and those beside it.
-    pub fn are_within(&self, row: &SegmentRow, corner: &Corner) -> bool {
-        let Some(slope) = row.piece.slope_of_errors() else { return false };
+    /// By how much places in the part may be beyond a corner; infinite where that is not known.
+    pub fn beyond(&self, row: &SegmentRow, corner: &Corner, misses: Option<&Misses>) -> f64 {
+        let Some(slope) = row.piece.slope_of_errors() else { return f64::INFINITY };
         let surrogate = &row.piece.surrogate;
         let xi = &corner.point.xi;
         // Where an event passes through the part, errors change with the share of the segment, too: in a step as a
         // polynomial does by the square of its degree. Those in other segments say nothing of its own.
         let passes = self.places.iter().any(|(segment, _)| *segment != corner.segment);
+        let by_share = passes && !row.has_branch(corner.segment);
         let (share, step) = surrogate.share(corner.point, corner.segment, row.time);
-        let of_share = if passes { 2.0 * ((STEP_NODES - 1) as f64).powi(2) / step } else { 0.0 };
+        let of_share = if by_share { 2.0 * ((STEP_NODES - 1) as f64).powi(2) / step } else { 0.0 };
         let change = |point: &Point| {
             let distance = largest(point.xi.iter().zip(xi).map(|(a, b)| a - b));
-            let shares = if passes { surrogate.share(point, corner.segment, row.time).0 - share } else { 0.0 };
+            let shares = if by_share { surrogate.share(point, corner.segment, row.time).0 - share } else { 0.0 };
             slope * distance + of_share * shares.abs()
         };
+        // What samples tell of the polynomials' errors: at corners they are known, and so is how they change on the way.
+        let told = misses.filter(|_| !passes).map(|own| own.of(corner.output, corner.error));
+        let missed = |xi: &[f64]| told.as_ref().map_or(0.0, |own| own.parabolas(xi));
+        let along: Option<Vec<f64>> = (0..xi.len()).map(|axis| told.as_ref()?.along(axis, xi)).collect();
+        let of_axes = |point: &Point| {
+            let along = along.as_ref()?.iter().zip(point.xi.iter().zip(xi));
+            Some(along.map(|(along, (a, b))| along * (slope * (a - b).abs()).min(1.0)).sum::<f64>())
+        };
+        let own = corner.value - missed(xi);
+        let rest = told.as_ref().map_or(corner.error, |told| told.rest);
         let count = self.places.len();
         let of_place = |(index, (segment, point)): (usize, &(usize, Point))| {
             let at = corner.output * count + index;
-            let change = if *segment == corner.segment { change(point) } else { f64::INFINITY };
-            Rival { within: corner.sign * (corner.value - self.values[at]), error: self.errors[at], change }
+            let is_own = *segment == corner.segment;
+            Rival {
+                within: corner.sign * (own - self.values[at] + missed(&point.xi)),
+                error: self.errors[at].min(rest),
+                change: if is_own { change(point) } else { f64::INFINITY },
+                along: if is_own { of_axes(point) } else { None },
+            }
         };
         let moved = |axis: usize| {
             let mut xi = xi.clone();
@@ -61,11 +196,20 @@ impl Looked {
         let beside = surrogate.points((0..xi.len()).map(moved).collect());
         let at: Vec<(&Point, usize, f64)> = beside.iter().map(|point| (point, corner.segment, row.time)).collect();
         let values = row.outputs_on(&at);
-        let of_axis = |axis: usize| {
-            let within = corner.sign * (corner.value - values[corner.output * at.len() + axis]);
-            Rival { within, error: corner.error, change: change(&beside[axis]) }
+        let within = |axis: usize| {
+            corner.sign * (own - values[corner.output * at.len() + axis] + missed(&beside[axis].xi))
         };
+        let rises = |axis: &usize| {
+            let rival = Rival { within: within(*axis), error: rest, change: change(&beside[*axis]), along: None };
+            rival.beyond(rest) > 0.0
+        };
+        // Where slopes are too small to tell, as far from the corner as errors may go on rising.
+        let of_axis = |axis: usize| {
+            let along = along.as_ref().map_or(f64::INFINITY, |along| along[axis]);
+            (along - within(axis) / (SAFETY_OF_SURROGATE * TUNING.beside_corner * slope)).max(0.0)
+        };
+        let near: f64 = if (0..xi.len()).any(|axis| rises(&axis)) { (0..xi.len()).map(of_axis).sum() } else { 0.0 };
         let places = self.places.iter().enumerate().map(of_place);
-        places.chain((0..xi.len()).map(of_axis)).all(|rival| rival.stays_within(corner.error))
+        places.map(|rival| rival.beyond(rest)).fold(near, f64::max)
     }
 }

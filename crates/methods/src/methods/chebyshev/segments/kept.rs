@@ -1,5 +1,6 @@
 //! Polynomials between events that are kept after a run: outputs at any point of the box, in any row.
 
+use super::at_row::RowMotion;
 use super::pieces::Pieces;
 use super::row::BoxRow;
 use crate::methods::closure::Closure;
@@ -14,11 +15,20 @@ pub(super) struct KeptPieces {
     /// Number of outputs.
     outputs: usize,
     rows: Vec<CutRow>,
+    /// Motions at the rows' times, by row and part.
+    motions: Vec<Vec<RowMotion>>,
 }
 
 impl KeptPieces {
-    pub fn new(domain: &ParameterBox, pieces: Pieces, outputs: usize, rows: Vec<CutRow>) -> Self {
-        Self { domain: domain.clone(), pieces, outputs, rows }
+    pub fn new(
+        domain: &ParameterBox,
+        mut pieces: Pieces,
+        outputs: usize,
+        rows: Vec<CutRow>,
+        motions: Vec<Vec<RowMotion>>,
+    ) -> Self {
+        pieces.forget_samples();
+        Self { domain: domain.clone(), pieces, outputs, rows, motions }
     }
 }
 
@@ -29,8 +39,9 @@ impl CutSurrogate for KeptPieces {
 
     fn values(&self, row: usize, outputs: &[usize], samples: &[&[f64]], closure: &dyn Closure) -> Vec<f64> {
         let points: Vec<Vec<f64>> = samples.iter().map(|sample| self.domain.xi(sample)).collect();
-        let Self { domain, pieces, outputs: count, rows } = self;
-        let row = BoxRow { domain, outputs: *count, pieces, closure, time: rows[row].time };
+        let Self { domain, pieces, outputs: count, rows, motions } = self;
+        let row =
+            BoxRow { domain, outputs: *count, pieces, motions: &motions[row], closure, time: rows[row].time };
         row.some_outputs(outputs, &points)
     }
 }

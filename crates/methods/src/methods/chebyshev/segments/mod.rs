@@ -10,11 +10,13 @@
 //! - `growth`: the terms of polynomials of many parameters;
 //! - `kept`: all of them, kept after the run;
 //! - `of_part`: a number that motions have in a part of the box only;
+//! - `at_row`: motions that are expanded at a row's time, where no event passes through a part then;
 //! - `row`: the outputs at a time, and how far the polynomials' errors move them;
 //! - `seeds`: where a range is searched for, and `climb`: the search within the part of the box that is in a segment,
 //!   and on its surfaces; `ends`: the ends that it finds;
 //! - `held`: which of these are a corner's, however the polynomials err.
 
+mod at_row;
 mod basis;
 mod climb;
 mod ends;
@@ -47,14 +49,17 @@ use crate::methods::request::Keep;
 use crate::methods::result::{BandBuilder, Estimate, MethodResult};
 use crate::methods::validation::Validation;
 use crate::numerics::{Extent, Range, SAFETY_OF_SURROGATE, Sample, Surrogate, largest};
+use at_row::{Expansion, RowMotion};
 use ends::Ends;
 use growth::Growth;
+use held::{AxisLines, Misses};
 use kept::KeptPieces;
 pub use of_part::{number_as_motion, range_in_part};
 use piece::Piece;
 use pieces::Pieces;
-use row::{BoxRow, SensedRow};
+use row::{BoxRow, SegmentRow, SensedRow};
 use seeds::Lattice;
+use surrogate::Point;
 use tuning::TUNING;
 
 /// By segments between events, where the ensemble's motions are cut there.
@@ -71,7 +76,7 @@ pub(super) fn of_degree(
     let Some(motions) = ensemble.segments(samples)? else { return Ok(None) };
     match Pieces::new(ensemble, surrogate, motions, validation)? {
         Some(pieces) => {
-            let composed = composed(ensemble, &pieces, Some(surrogate), validation)?;
+            let composed = composed(ensemble, &pieces, Expansion::Grid(surrogate), validation)?;
             Ok(Some(composed.finished(ensemble, samples.len(), pieces, keep)))
         }
         None => Ok(None),
@@ -129,12 +134,12 @@ fn grown(
         let count = growth.grid.len();
         let surrogate = Surrogate::sparse(&growth.grid);
         let Some(pieces) = Pieces::new(ensemble, &surrogate, growth.motions.clone(), validation)? else { break };
-        let error = largest(pieces.all.iter().map(|piece| growth.error(&piece.errors)));
+        let error = largest(pieces.all.iter().map(|piece| growth.error(piece.errors())));
         let wanted = count + count / 2;
         let is_last = goal.spent + wanted > goal.budget.simulations || ensemble.is_interrupted();
         let is_likely = |(excess, before): (f64, f64)| excess * error <= TUNING.likely * before;
         if is_last || last.is_none_or(is_likely) {
-            let composed = composed(ensemble, &pieces, Some(&surrogate), validation)?;
+            let composed = composed(ensemble, &pieces, Expansion::Grid(&surrogate), validation)?;
             let result = composed.finished(ensemble, count, pieces, keep);
             let excess = excess(&result, goal);
             best = Some(MethodResult { order: Some(growth.orders()), ..result });
@@ -192,14 +197,14 @@ pub(in crate::methods) fn of_jets(
     validation: &Validation,
 ) -> Result<Option<MethodResult>, EnsembleError> {
     let Some(mut pieces) = Pieces::of_jets(ensemble, space, validation)? else { return Ok(None) };
-    let mut found = composed(ensemble, &pieces, None, validation)?;
+    let mut found = composed(ensemble, &pieces, Expansion::Jets(space), validation)?;
     for _ in 0..TUNING.halvings_of_jets {
         if found.worst <= TUNING.enough_of_jets {
             break;
         }
         let Some(halved) = pieces.halved(ensemble, space)? else { break };
         pieces = halved;
-        found = composed(ensemble, &pieces, None, validation)?;
+        found = composed(ensemble, &pieces, Expansion::Jets(space), validation)?;
     }
     Ok(Some(found.finished(ensemble, 1, pieces, Keep::Nothing)))
 }
@@ -210,6 +215,8 @@ struct Composed {
     simulated: Simulated,
     /// Rows that are known.
     rows: Vec<CutRow>,
+    /// Motions at their times, by row and part.
+    motions: Vec<Vec<RowMotion>>,
     /// Largest error as a share of its row's width.
     worst: f64,
 }
@@ -219,7 +226,9 @@ impl Composed {
     fn finished(self, ensemble: &dyn Ensemble, simulations: usize, pieces: Pieces, keep: Keep) -> MethodResult {
         let simulations = simulations + pieces.added;
         let keeps = keep == Keep::Statistics;
-        let kept = keeps.then(|| KeptPieces::new(ensemble.domain(), pieces, ensemble.outputs(), self.rows));
+        let kept = keeps.then(|| {
+            KeptPieces::new(ensemble.domain(), pieces, ensemble.outputs(), self.rows, self.motions)
+        });
         let kept = kept.map(|kept| KeptSurrogate::of_pieces(Arc::new(kept)));
         let result = self.bands.finish_keeping(simulations, self.simulated, kept);
         MethodResult { is_told_at_rows: true, ..result }
@@ -233,13 +242,19 @@ impl Composed {
 fn composed(
     ensemble: &dyn Ensemble,
     pieces: &Pieces,
-    grid: Option<&Surrogate>,
+    expansion: Expansion,
     validation: &Validation,
 ) -> Result<Composed, EnsembleError> {
     let domain = ensemble.domain();
     let lattice = |piece: &Piece| Lattice::new(&piece.surrogate, &piece.samples, domain.dimension());
     let lattices: Vec<Lattice> = pieces.all.iter().map(lattice).collect();
-    let analysis = grid.map(|grid| (grid, SensitivityAnalysis::new(domain, grid)));
+    let analysis = match expansion {
+        Expansion::Grid(grid) => Some((grid, SensitivityAnalysis::new(domain, grid))),
+        Expansion::Jets(_) => None,
+    };
+    let lines = AxisLines::new(&validation.points);
+    let held_out: Vec<Vec<Point>> =
+        pieces.all.iter().map(|piece| piece.surrogate.points(validation.points.clone())).collect();
     let middle = vec![0.0; domain.dimension()];
     let parameters = domain.sample(&middle);
     let mut closures: Vec<Box<dyn Closure + '_>> = Vec::new();
@@ -254,23 +269,33 @@ fn composed(
         }
     }
     let known_rows = (0..ensemble.rows()).take_while(|&row| ensemble.time(row) <= pieces.known_to).count();
+    let times: Vec<f64> = (0..known_rows).map(|row| ensemble.time(row)).collect();
+    let of_parts: Vec<Vec<RowMotion>> = pieces
+        .all
+        .par_iter()
+        .zip(&lattices)
+        .map(|(piece, lattice)| RowMotion::of_rows(piece, lattice, &times, expansion))
+        .collect();
+    let mut of_parts: Vec<_> = of_parts.into_iter().map(Vec::into_iter).collect();
+    let motions: Vec<Vec<RowMotion>> =
+        times.iter().map(|_| of_parts.iter_mut().filter_map(Iterator::next).collect()).collect();
     let estimate = |row: usize| -> Vec<Estimate> {
         if row >= known_rows {
             return (0..ensemble.outputs()).map(|output| unknown(ensemble.seen(row, output))).collect();
         }
         let (time, closure) = (ensemble.time(row), closures[chosen[row]].as_ref());
-        let row_of = BoxRow { domain, outputs: ensemble.outputs(), pieces, closure, time };
+        let row_of = BoxRow { domain, outputs: ensemble.outputs(), pieces, motions: &motions[row], closure, time };
         let at_corner = |output: usize, xi: &[f64]| {
             let corner = validation.points.iter().position(|point| point == xi)?;
             Some(validation.direct.at(row, output)[corner]).filter(|value| value.is_finite())
         };
-        let of_part = |(piece, lattice)| {
-            let row_of = row_of.in_part(piece);
-            let mut ends = climb::ends(&row_of, lattice);
+        let of_part = |(row_of, (lattice, at)): (SegmentRow, (&Lattice, &Vec<Point>))| {
+            let misses = Misses::new(&lines, &row_of, at, |output| validation.direct.at(row, output));
+            let mut ends = climb::ends(&row_of, lattice, Some(&misses));
             ends.iter_mut().enumerate().for_each(|(output, own)| own.hold(|xi| at_corner(output, xi)));
             ends
         };
-        let parts: Vec<Vec<Ends>> = pieces.all.iter().zip(&lattices).map(of_part).collect();
+        let parts: Vec<Vec<Ends>> = row_of.in_parts().zip(lattices.iter().zip(&held_out)).map(of_part).collect();
         let joined: Vec<(Extent, f64)> = (0..ensemble.outputs()).map(|output| joined(&parts, output)).collect();
         let extents: Vec<Extent> = joined.iter().map(|(extent, _)| extent.clone()).collect();
         let of_grid = |(grid, analysis): &(&Surrogate, SensitivityAnalysis)| {
@@ -307,7 +332,8 @@ fn composed(
         CutRow { time: ensemble.time(row), independent }
     };
     let rows = (0..known_rows).map(of_row).collect();
-    Ok(Composed { bands, simulated: Simulated { beyond_tolerance_from, ..Simulated::default() }, rows, worst })
+    let simulated = Simulated { beyond_tolerance_from, ..Simulated::default() };
+    Ok(Composed { bands, simulated, rows, motions, worst })
 }
 
 /// An error as a share of its row's width, which is none to speak of below a share of the output's span; none where it

@@ -86,8 +86,8 @@ pub fn range_in_part(
     }
     let of_piece = |piece: &Piece| {
         let lattice = Lattice::new(&piece.surrogate, &piece.samples, k);
-        let row = SegmentRow { domain, outputs: 1, piece, closure: &Number, time: middle };
-        climb::ends(&row, &lattice)
+        let row = SegmentRow { domain, outputs: 1, piece, motion: None, closure: &Number, time: middle };
+        climb::ends(&row, &lattice, None)
     };
     let parts: Vec<Vec<Ends>> = pieces.iter().filter(|piece| piece.surrogate.segments() > 0).map(of_piece).collect();
     let (extent, moved) = joined(&parts, 0);

@@ -8,71 +8,95 @@ use crate::numerics::SegmentMotions;
 #[derive(Clone, Debug)]
 pub(super) struct Piece {
     pub surrogate: SegmentSurrogate,
-    pub errors: SegmentErrors,
-    /// Errors at samples that are deeper behind all surfaces: by the shares of the depth from which on they hold, as
-    /// far as samples are enough.
-    deeper: Vec<(f64, SegmentErrors)>,
+    /// Of all samples; then of those that are deeper behind all surfaces, as far as these are enough.
+    told: Vec<Told>,
     /// ξ of its samples.
     pub samples: Vec<Vec<f64>>,
     /// Distance of its samples from each surface, at most.
     depths: Vec<f64>,
+    pub motions: PieceMotions,
 }
 
-/// Motions of samples, and those that polynomials through all others predict.
-#[derive(Clone, Copy)]
-pub(super) struct FittedMotions<'m> {
-    pub motions: &'m SegmentMotions,
-    pub predicted: &'m SegmentMotions,
+/// Errors with the samples that tell them.
+#[derive(Clone, Debug)]
+pub(super) struct Told {
+    /// Share of the depth from which on they hold.
+    limit: f64,
+    errors: SegmentErrors,
+    /// Places among the samples of the fit, and among those that are held out.
+    pub fitted: Vec<usize>,
+    pub held_out: Vec<usize>,
 }
 
-/// Validation samples: ξ of all, and motions of those of the word.
-#[derive(Clone, Copy)]
-pub(super) struct ValidationMotions<'m> {
-    pub points: &'m [Vec<f64>],
-    pub motions: &'m SegmentMotions,
+/// Motions of a part's samples.
+#[derive(Clone, Debug, Default)]
+pub(super) struct PieceMotions {
+    /// That polynomials go through, or are fitted to; of a jet, its own.
+    pub fitted: SegmentMotions,
+    /// ξ of samples that are held out, and their motions.
+    pub points: Vec<Vec<f64>>,
+    pub held_out: SegmentMotions,
 }
 
 impl Piece {
     /// With the same errors everywhere.
-    pub fn new(surrogate: SegmentSurrogate, errors: SegmentErrors, samples: Vec<Vec<f64>>) -> Self {
-        Self { surrogate, errors, samples, deeper: Vec::new(), depths: Vec::new() }
+    pub fn new(
+        surrogate: SegmentSurrogate,
+        errors: SegmentErrors,
+        samples: Vec<Vec<f64>>,
+        motions: PieceMotions,
+    ) -> Self {
+        let held_out = (0..motions.points.len()).collect();
+        let told = vec![Told { limit: 0.0, errors, fitted: Vec::new(), held_out }];
+        Self { surrogate, told, samples, depths: Vec::new(), motions }
     }
 
-    /// Of polynomials that were fitted to samples, with the errors of those.
+    /// Of polynomials that were fitted to samples, with the errors of those, given what polynomials through all others
+    /// predict of each.
     pub fn fitted(
         surrogate: SegmentSurrogate,
         samples: Vec<Vec<f64>>,
-        fitted: FittedMotions<'_>,
-        held_out: ValidationMotions<'_>,
+        motions: PieceMotions,
+        predicted: &SegmentMotions,
     ) -> Self {
         let margins = |xi: &[f64]| surrogate.ends.iter().map(|end| end.margin(xi)).collect::<Vec<f64>>();
         let of_samples: Vec<Vec<f64>> = samples.iter().map(|xi| margins(xi)).collect();
-        let of_points: Vec<Vec<f64>> =
-            held_out.motions.samples.iter().map(|&sample| margins(&held_out.points[sample])).collect();
+        let of_points: Vec<Vec<f64>> = motions.points.iter().map(|xi| margins(xi)).collect();
         let depth = |end: usize| of_samples.iter().map(|margins| margins[end]).fold(0.0, f64::max);
         let depths: Vec<f64> = (0..surrogate.ends.len()).map(depth).collect();
         let is_inside = |margins: &[f64]| {
             let mut ends = surrogate.ends.iter().zip(margins);
             ends.all(|(end, margin)| end.offset == 0.0 || *margin >= 0.0)
         };
-        let errors = |own: &[usize], points: &[usize]| {
-            let errors = SegmentErrors::between(&fitted.motions.picked(own), &fitted.predicted.picked(own));
-            let direct = held_out.motions.picked(points);
-            let at: Vec<Vec<f64>> = direct.samples.iter().map(|&sample| held_out.points[sample].clone()).collect();
-            if at.is_empty() { errors } else { errors.or(&SegmentErrors::new(&surrogate, &at, &direct)) }
+        let told = |limit: f64, fitted: Vec<usize>, held_out: Vec<usize>| {
+            let errors = SegmentErrors::between(&motions.fitted.picked(&fitted), &predicted.picked(&fitted));
+            let at: Vec<Vec<f64>> = held_out.iter().map(|&point| motions.points[point].clone()).collect();
+            let of_points = || SegmentErrors::new(&surrogate, &at, &motions.held_out.picked(&held_out));
+            let errors = if at.is_empty() { errors } else { errors.or(&of_points()) };
+            Told { limit, errors, fitted, held_out }
         };
         let points: Vec<usize> = (0..of_points.len()).filter(|&point| is_inside(&of_points[point])).collect();
-        let of_all = errors(&(0..samples.len()).collect::<Vec<_>>(), &points);
+        let of_all = told(0.0, (0..samples.len()).collect(), points.clone());
         let of_depth = |&limit: &f64| {
             let is_deep = |margins: &[f64]| share_of_depth(margins, &depths) >= limit;
             let own: Vec<usize> = (0..samples.len()).filter(|&sample| is_deep(&of_samples[sample])).collect();
             let points: Vec<usize> = points.iter().copied().filter(|&point| is_deep(&of_points[point])).collect();
-            (own.len() >= surrogate.terms()).then(|| (limit, errors(&own, &points)))
+            (own.len() >= surrogate.terms()).then(|| told(limit, own, points))
         };
         let has_depths = !depths.is_empty() && depths.iter().all(|depth| *depth > 0.0);
         let limits = TUNING.depths_of_errors.iter().filter(|_| has_depths);
-        let deeper = limits.filter_map(of_depth).collect();
-        Self { surrogate, errors: of_all, deeper, samples, depths }
+        let told = std::iter::once(of_all).chain(limits.filter_map(of_depth)).collect();
+        Self { surrogate, told, samples, depths, motions }
+    }
+
+    /// Errors at all samples.
+    pub fn errors(&self) -> &SegmentErrors {
+        &self.told[0].errors
+    }
+
+    /// Samples that tell errors: all, and then those that are deeper behind surfaces.
+    pub fn told(&self) -> &[Told] {
+        &self.told
     }
 
     /// By how many times themselves errors change for a ξ of 1, at most: a polynomial does by the square of its degree
@@ -91,9 +115,13 @@ impl Piece {
     /// Errors at a point: beside a surface they are larger than far behind it, so that only samples count which are
     /// not several times nearer to it.
     pub fn errors_at(&self, point: &Point) -> &SegmentErrors {
+        &self.told[self.told_at(point)].errors
+    }
+
+    /// The number of the errors at a point.
+    pub fn told_at(&self, point: &Point) -> usize {
         let share = share_of_depth(&point.margins, &self.depths);
-        let fits = |(limit, _): &&(f64, SegmentErrors)| *limit <= TUNING.shallower * share;
-        self.deeper.iter().rev().find(fits).map_or(&self.errors, |(_, errors)| errors)
+        self.told.iter().rposition(|told| told.limit <= TUNING.shallower * share).unwrap_or(0)
     }
 }
 

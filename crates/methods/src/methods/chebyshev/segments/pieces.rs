@@ -10,7 +10,7 @@ use super::basis::{Basis, End};
 use super::fitting::Fitting;
 use super::growth::Growth;
 use super::parts::Samples;
-use super::piece::Piece;
+use super::piece::{Piece, PieceMotions};
 use super::surrogate::{HalfBox, SegmentErrors, SegmentSurrogate};
 use super::tuning::TUNING;
 use crate::methods::ensemble::{Ensemble, EnsembleError};
@@ -50,7 +50,9 @@ impl Pieces {
                 let surrogate =
                     SegmentSurrogate::new(Basis::Grid(grid.basis().clone()), Vec::new(), motions, coefficients);
                 let errors = SegmentErrors::new(&surrogate, &validation.points, direct);
-                Piece::new(surrogate, errors, Vec::new())
+                let points = validation.points.clone();
+                let motions = PieceMotions { fitted: motions.clone(), points, held_out: direct.clone() };
+                Piece::new(surrogate, errors, Vec::new(), motions)
             };
             let all = motions.words.iter().zip(&direct.words).map(of_word).collect();
             let known_to = motions.known_to.min(direct.known_to);
@@ -134,6 +136,11 @@ impl Pieces {
         Ok(Some(Self { all, known_to, added }))
     }
 
+    /// Leaves the samples' motions, which nobody asks for behind the rows' bounds.
+    pub fn forget_samples(&mut self) {
+        self.all.iter_mut().for_each(|piece| piece.motions = PieceMotions::default());
+    }
+
     /// The part that some ξ is in: where errors of surfaces leave it in none, that which it is least far from.
     pub fn part_of(&self, xi: &[f64]) -> Option<&Piece> {
         let beyond = |piece: &&Piece| piece.surrogate.ends.iter().map(|end| -end.margin(xi)).fold(0.0, f64::max);
@@ -147,7 +154,8 @@ fn of_jet(basis: Basis, ends: Vec<End>, jet: &SegmentMotions, xi: Vec<Vec<f64>>,
     // From the start, which is known, errors grow. Behind events ends are farther from the centre of a jet than samples
     // are: what one of them shows is said of all steps.
     let errors = SegmentErrors::new(&surrogate, &xi, motions).of_segments_behind_events();
-    Piece::new(surrogate, errors, xi)
+    let own = PieceMotions { fitted: jet.clone(), points: xi.clone(), held_out: motions.clone() };
+    Piece::new(surrogate, errors, xi, own)
 }
 
 /// Highest total degree in a part, given that over the whole box.

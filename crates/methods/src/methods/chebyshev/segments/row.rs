@@ -1,5 +1,6 @@
 //! The outputs at a time, through events.
 
+use super::at_row::RowMotion;
 use super::piece::Piece;
 use super::pieces::Pieces;
 use super::surrogate::{Point, SegmentErrors};
@@ -14,6 +15,8 @@ pub(super) struct SegmentRow<'r> {
     /// Number of outputs.
     pub outputs: usize,
     pub piece: &'r Piece,
+    /// The part's motion at the row's time, where it is expanded then.
+    pub motion: Option<&'r RowMotion>,
     pub closure: &'r dyn Closure,
     /// s
     pub time: f64,
@@ -25,6 +28,8 @@ pub(super) struct BoxRow<'r> {
     /// Number of outputs.
     pub outputs: usize,
     pub pieces: &'r Pieces,
+    /// Of each part.
+    pub motions: &'r [RowMotion],
     pub closure: &'r dyn Closure,
     /// s
     pub time: f64,
@@ -40,14 +45,34 @@ pub(super) struct SensedRow<'r> {
 impl SegmentRow<'_> {
     /// All outputs (output, point), given the point's segment, and the time at which its motion is taken there.
     pub fn outputs_on(&self, points: &[(&Point, usize, f64)]) -> Vec<f64> {
-        let surrogate = &self.piece.surrogate;
-        let (count, lines) = (points.len(), surrogate.lines());
+        let (count, lines) = (points.len(), self.piece.surrogate.lines());
         let mut motion = vec![0.0; lines * count];
         for (index, (point, segment, time)) in points.iter().enumerate() {
-            let values = surrogate.motion(point, *segment, *time);
-            values.enumerate().for_each(|(line, value)| motion[line * count + index] = value);
+            self.set_motion(point, *segment, *time, |line, value| motion[line * count + index] = value);
         }
         self.closed(points.iter().map(|(point, ..)| point.xi.as_slice()), count, motion)
+    }
+
+    /// Sets the motion of a point at a time on the branch of a segment, line by line.
+    fn set_motion(&self, point: &Point, segment: usize, time: f64, mut set: impl FnMut(usize, f64)) {
+        let at_row = self.motion.filter(|_| time == self.time).and_then(|own| own.motion(point, segment));
+        match at_row {
+            Some(values) => values.enumerate().for_each(|(line, value)| set(line, value)),
+            None => {
+                let values = self.piece.surrogate.motion(point, segment, time);
+                values.enumerate().for_each(|(line, value)| set(line, value));
+            }
+        }
+    }
+
+    /// Whether motions on the branch of a segment are expanded at the row's time.
+    pub fn has_branch(&self, segment: usize) -> bool {
+        self.motion.is_some_and(|own| own.has_branch(segment))
+    }
+
+    /// Whether no event passes through the part.
+    pub fn is_common(&self) -> bool {
+        self.motion.is_some_and(|own| own.is_common)
     }
 
     /// The same at the row's time of points in segments of their own.
@@ -56,7 +81,7 @@ impl SegmentRow<'_> {
     }
 
     /// The same of points in the segments that they are in then.
-    fn outputs_at(&self, points: &[Point]) -> Vec<f64> {
+    pub fn outputs_at(&self, points: &[Point]) -> Vec<f64> {
         let at: Vec<_> = points.iter().map(|point| (point, point.segment(self.time), self.time)).collect();
         self.outputs_on(&at)
     }
@@ -92,13 +117,26 @@ impl SegmentRow<'_> {
             let value = |index: usize| largest(ways.iter().map(|way| way[index] - here[index]));
             (0..here.len()).map(value).collect()
         };
-        let mut moved = of([-1.0, 1.0].map(|shift| self.outputs_on(&at(shift))));
         let add = |moved: &mut Vec<f64>, by: &[f64]| moved.iter_mut().zip(by).for_each(|(own, by)| *own += by);
-        add(&mut moved, &self.of_lines(places, here, SegmentErrors::of_line));
-        let mut at_shares = self.along(places, here);
-        add(&mut at_shares, &self.of_lines(places, here, SegmentErrors::of_share));
-        // Errors that are unknown at times stay so.
-        moved.iter_mut().zip(at_shares).filter(|(own, other)| other < *own).for_each(|(own, other)| *own = other);
+        let in_step = |error: fn(&SegmentErrors, usize, usize, usize) -> f64| {
+            self.of_lines(places, here, |segment, point, line| {
+                let at_row = self.motion.and_then(|own| own.error(segment, self.piece.told_at(point), line));
+                let of_step = || {
+                    error(self.piece.errors_at(point), segment, surrogate.step(point, segment, self.time), line)
+                };
+                at_row.unwrap_or_else(of_step)
+            })
+        };
+        let mut moved = of([-1.0, 1.0].map(|shift| self.outputs_on(&at(shift))));
+        add(&mut moved, &in_step(SegmentErrors::of_line));
+        if !places.iter().all(|(segment, _)| self.has_branch(*segment)) {
+            let mut at_shares = self.along(places, here);
+            add(&mut at_shares, &in_step(SegmentErrors::of_share));
+            // Errors that are unknown at times stay so; those on a branch are of the row's time.
+            let is_less = |index: usize, own: f64, other: f64| other < own && !self.has_branch(places[index % count].0);
+            let all = moved.iter_mut().zip(at_shares).enumerate();
+            all.filter(|(index, (own, other))| is_less(*index, **own, *other)).for_each(|(_, (own, other))| *own = other);
+        }
         for end in 0..surrogate.ends.len() {
             add(&mut moved, &of([-1.0, 1.0].map(|sign| self.outputs_at(&self.beside(places, end, sign)))));
         }
@@ -110,27 +148,22 @@ impl SegmentRow<'_> {
             .collect()
     }
 
-    /// How far outputs at points move, from their values there, where each line is off by its error in a step of a
-    /// segment.
+    /// How far outputs at points move, from their values there, where each line is off by its error: of a segment, a
+    /// point in it, and a line.
     fn of_lines(
         &self,
         places: &[(usize, Point)],
         here: &[f64],
-        error: fn(&SegmentErrors, usize, usize, usize) -> f64,
+        error: impl Fn(usize, &Point, usize) -> f64,
     ) -> Vec<f64> {
-        let surrogate = &self.piece.surrogate;
-        let (count, n) = (places.len(), surrogate.lines() / 2);
+        let (count, n) = (places.len(), self.piece.surrogate.lines() / 2);
         let mut moved = vec![0.0; here.len()];
         for line in self.closure.independent().iter().flat_map(|&coordinate| [coordinate, n + coordinate]) {
             let ways = [-1.0, 1.0].map(|sign| {
                 let mut motion = vec![0.0; 2 * n * count];
                 for (index, &(segment, ref point)) in places.iter().enumerate() {
-                    let step = surrogate.step(point, segment, self.time);
-                    let error = error(self.piece.errors_at(point), segment, step, line);
-                    for (number, value) in surrogate.motion(point, segment, self.time).enumerate() {
-                        let by = if number == line { sign * error } else { 0.0 };
-                        motion[number * count + index] = value + by;
-                    }
+                    self.set_motion(point, segment, self.time, |number, value| motion[number * count + index] = value);
+                    motion[line * count + index] += sign * error(segment, point, line);
                 }
                 self.closed(places.iter().map(|(_, point)| point.xi.as_slice()), count, motion)
             });
@@ -215,21 +248,24 @@ impl SegmentRow<'_> {
 }
 
 impl<'r> BoxRow<'r> {
-    /// The row in one part.
-    pub fn in_part(&self, piece: &'r Piece) -> SegmentRow<'r> {
-        let Self { domain, outputs, closure, time, .. } = *self;
-        SegmentRow { domain, outputs, piece, closure, time }
+    /// The row in each part.
+    pub fn in_parts(&self) -> impl Iterator<Item = SegmentRow<'r>> {
+        let Self { domain, outputs, pieces, motions, closure, time } = *self;
+        let of_part = move |(piece, motion): (&'r Piece, &'r RowMotion)| {
+            SegmentRow { domain, outputs, piece, motion: Some(motion), closure, time }
+        };
+        pieces.all.iter().zip(motions).map(of_part)
     }
 
     /// Some of the outputs at points of the box: output, point.
     pub fn some_outputs(&self, outputs: &[usize], points: &[Vec<f64>]) -> Vec<f64> {
         let mut values = vec![f64::NAN; outputs.len() * points.len()];
-        for piece in &self.pieces.all {
+        for row in self.in_parts() {
             let is_own =
-                |point: &usize| self.pieces.part_of(&points[*point]).is_some_and(|own| std::ptr::eq(own, piece));
+                |point: &usize| self.pieces.part_of(&points[*point]).is_some_and(|own| std::ptr::eq(own, row.piece));
             let own: Vec<usize> = (0..points.len()).filter(is_own).collect();
-            let at = piece.surrogate.points(own.iter().map(|&point| points[point].clone()).collect());
-            let found = self.in_part(piece).outputs_at(&at);
+            let at = row.piece.surrogate.points(own.iter().map(|&point| points[point].clone()).collect());
+            let found = row.outputs_at(&at);
             for (line, output) in outputs.iter().enumerate() {
                 for (index, point) in own.iter().enumerate() {
                     values[line * points.len() + point] = found[output * own.len() + index];

@@ -59,6 +59,11 @@ impl Lattice {
         Self { points, on_ends, edges }
     }
 
+    /// All points.
+    pub fn points(&self) -> &[Point] {
+        &self.points
+    }
+
     /// Points at which a search begins.
     pub fn looked_at(&self) -> impl Iterator<Item = &Point> {
         let (on_ends, others) = self.points.split_at(self.on_ends);

@@ -166,6 +166,21 @@ impl SegmentSurrogate {
         self.lines
     }
 
+    /// By what coefficients were fitted, where they were.
+    pub fn squares(&self) -> Option<&LeastSquares> {
+        self.squares.as_ref()
+    }
+
+    /// Whether it is a jet.
+    pub fn is_jet(&self) -> bool {
+        matches!(self.basis, Basis::Taylor { .. })
+    }
+
+    /// Size of the terms that coefficients lack, as far as these tell.
+    pub fn truncation(&self, coefficients: &[f64]) -> f64 {
+        self.basis.truncation(coefficients)
+    }
+
     /// Number of terms.
     pub fn terms(&self) -> usize {
         self.basis.len()
@@ -240,6 +255,16 @@ impl Point {
     pub fn segment(&self, time: f64) -> usize {
         let inner = &self.times[1..self.times.len() - 1];
         inner.iter().take_while(|&&begin| begin <= time).count()
+    }
+
+    /// Number of terms.
+    pub fn terms(&self) -> usize {
+        self.terms.len()
+    }
+
+    /// The polynomial with these coefficients.
+    pub fn value(&self, coefficients: &[f64]) -> f64 {
+        dot(coefficients, &self.terms)
     }
 
     /// Whether it is in the word's part of the box.

@@ -1,0 +1,188 @@
+//! Motions at a row's time, expanded there: on the branch of a segment, which goes on a little beyond its events, they
+//! are as smooth in the parameters at a time as at a share of the segment, and no instant's error moves them.
+
+use symdiff::jet::JetSpace;
+
+use super::piece::{Piece, Told};
+use super::seeds::Lattice;
+use super::surrogate::Point;
+use super::tuning::TUNING;
+use crate::numerics::{STEP_NODES, SegmentMotions, Surrogate, SurrogateWork, largest, nearest_step, step_nodes};
+
+/// What gives polynomials of values.
+#[derive(Clone, Copy)]
+pub(super) enum Expansion<'e> {
+    Grid(&'e Surrogate),
+    Jets(&'e JetSpace),
+}
+
+/// Positions and velocities of a part at a time.
+#[derive(Clone, Debug)]
+pub(super) struct RowMotion {
+    /// Of the branches of segments that all samples are on, or not far from.
+    branches: Vec<Option<Branch>>,
+    /// Whether all of the part is in one segment, and this has a branch.
+    pub is_common: bool,
+}
+
+/// The branch of a segment at a time.
+#[derive(Clone, Debug)]
+struct Branch {
+    /// Coefficients, line by line.
+    coefficients: Vec<f64>,
+    /// Errors of each line, for each of the part's sets of samples that tell them.
+    errors: Vec<Vec<f64>>,
+}
+
+impl RowMotion {
+    /// Of all rows at these times.
+    pub fn of_rows(piece: &Piece, lattice: &Lattice, times: &[f64], expansion: Expansion) -> Vec<Self> {
+        let of_row = |&time: &f64| {
+            let segments = 0..piece.surrogate.segments();
+            let branches: Vec<Option<Branch>> =
+                segments.map(|segment| Branch::new(piece, segment, time, expansion)).collect();
+            let common = common_segment(piece, lattice, time);
+            let is_common = common.is_some_and(|segment| branches[segment].is_some());
+            Self { branches, is_common }
+        };
+        let own: Vec<Self> = times.iter().map(of_row).collect();
+        // Errors of rows beside it count too, so that none vanishes by a change of sign.
+        let beside = |row: usize| {
+            let mut raised = own[row].clone();
+            for other in &own[row.saturating_sub(1)..(row + 2).min(own.len())] {
+                let branches = raised.branches.iter_mut().zip(&other.branches);
+                for (own, other) in branches.filter_map(|(own, other)| own.as_mut().zip(other.as_ref())) {
+                    let errors = own.errors.iter_mut().flatten().zip(other.errors.iter().flatten());
+                    errors.for_each(|(own, other)| *own = largest([*own, *other]));
+                }
+            }
+            raised
+        };
+        (0..own.len()).map(beside).collect()
+    }
+
+    /// Whether a segment's branch is known.
+    pub fn has_branch(&self, segment: usize) -> bool {
+        self.branches[segment].is_some()
+    }
+
+    /// The motion (2n) of a point on the branch of a segment.
+    pub fn motion<'p>(&'p self, point: &'p Point, segment: usize) -> Option<impl Iterator<Item = f64> + 'p> {
+        let branch = self.branches[segment].as_ref()?;
+        Some(branch.coefficients.chunks_exact(point.terms()).map(|line| point.value(line)))
+    }
+
+    /// Error of a line there, by one of the part's sets of samples that tell it.
+    pub fn error(&self, segment: usize, told: usize, line: usize) -> Option<f64> {
+        self.branches[segment].as_ref().map(|branch| branch.errors[told][line])
+    }
+}
+
+impl Branch {
+    fn new(piece: &Piece, segment: usize, time: f64, expansion: Expansion) -> Option<Self> {
+        let surrogate = &piece.surrogate;
+        let direct = piece.motions.held_out.at(segment, time, TUNING.beyond_longest)?;
+        let mut doubts = direct.doubts;
+        let mut of_samples = || {
+            let motion = piece.motions.fitted.at(segment, time, TUNING.beyond_longest)?;
+            doubts.iter_mut().zip(motion.doubts).for_each(|(own, other)| *own = own.max(other));
+            Some(motion.values)
+        };
+        // Of a fit, by how much it misses each of its samples where that is left out.
+        let mut left_out = Vec::new();
+        let coefficients = match (surrogate.squares(), expansion) {
+            (Some(squares), _) => {
+                let values = of_samples()?;
+                let fits = values.chunks_exact(piece.samples.len()).map(|line| squares.fit(line));
+                let (own, missed): (Vec<_>, Vec<_>) = fits.collect::<Option<Vec<_>>>()?.into_iter().unzip();
+                left_out = missed;
+                own.concat()
+            }
+            (None, Expansion::Grid(grid)) => grid.coefficients(&of_samples()?, &mut SurrogateWork::default()),
+            (None, Expansion::Jets(space)) => jet_at(space, &piece.motions.fitted, segment, time)?,
+        };
+        let points = surrogate.points(piece.motions.points.clone());
+        let of_line = |(line, own): (usize, &[f64])| {
+            let least = doubts[line].max(surrogate.truncation(own));
+            let values = &direct.values[line * points.len()..];
+            let of_points: Vec<f64> = points.iter().zip(values).map(|(point, value)| point.value(own) - value).collect();
+            let of_told = |told: &Told| {
+                let of_fit = left_out.get(line).into_iter().flat_map(|line| told.fitted.iter().map(|&own| line[own]));
+                let others = told.held_out.iter().map(|&point| of_points[point]);
+                largest(of_fit.chain(others).chain([least]))
+            };
+            piece.told().iter().map(of_told).collect::<Vec<f64>>()
+        };
+        let lines: Vec<Vec<f64>> =
+            coefficients.chunks_exact(surrogate.terms()).enumerate().map(of_line).collect();
+        // At shares of the segment polynomials may do better, where its branch is long.
+        let at_shares = &piece.errors().lines[segment];
+        let is_better = |(line, errors): (usize, &Vec<f64>)| {
+            errors[0] <= largest(at_shares.iter().map(|of_step| of_step[line]))
+        };
+        let errors = (0..piece.told().len()).map(|told| lines.iter().map(|line| line[told]).collect()).collect();
+        lines.iter().enumerate().all(is_better).then_some(Self { coefficients, errors })
+    }
+}
+
+/// The segment that all of a part is in at a time, wherever within their errors instants are.
+fn common_segment(piece: &Piece, lattice: &Lattice, time: f64) -> Option<usize> {
+    let segment = lattice.points().first()?.segment(time);
+    let last = piece.surrogate.segments() - 1;
+    let is_within = |begin: f64, end: f64, errors: [f64; 2]| {
+        (segment == 0 || begin + errors[0] <= time) && (segment == last || time <= end - errors[1])
+    };
+    let of_point = |point: &Point| {
+        let errors = &piece.errors_at(point).times;
+        let safe = [segment, segment + 1].map(|number| TUNING.safety_of_common * errors[number]);
+        is_within(point.times[segment], point.times[segment + 1], safe)
+    };
+    let of_motions = |motions: &SegmentMotions| {
+        let mut samples = 0..motions.samples.len();
+        samples.all(|own| is_within(motions.times[segment][own], motions.times[segment + 1][own], [0.0; 2]))
+    };
+    let fitted = piece.surrogate.is_jet() || of_motions(&piece.motions.fitted);
+    (fitted && of_motions(&piece.motions.held_out) && lattice.points().iter().all(of_point)).then_some(segment)
+}
+
+/// Coefficients of the lines of a jet at a time, line by line: the polynomial through a step's nodes, at the share that
+/// the time is at. `None` where its centre is too far beyond the segment.
+fn jet_at(space: &JetSpace, jet: &SegmentMotions, segment: usize, time: f64) -> Option<Vec<f64>> {
+    let terms = space.len();
+    let product = |a: &[f64], b: &[f64]| {
+        let mut out = vec![0.0; terms];
+        space.mul(a, b, &mut out);
+        out
+    };
+    let [begin, end] = [&jet.times[segment], &jet.times[segment + 1]];
+    let length: Vec<f64> = end.iter().zip(begin).map(|(end, begin)| end - begin).collect();
+    let mut since: Vec<f64> = begin.iter().map(|begin| -begin).collect();
+    since[0] += time;
+    let mut share = vec![0.0; terms];
+    space.div(&since, &length, &mut share);
+    let (step, at_centre) = nearest_step(&jet.steps[segment], share[0]);
+    if !(-TUNING.beyond_longest..=1.0 + TUNING.beyond_longest).contains(&at_centre) {
+        return None;
+    }
+    let steps = &jet.steps[segment];
+    let first = step.checked_sub(1).map_or(0.0, |before| steps[before]);
+    let mut local: Vec<f64> = share.iter().map(|share| share / (steps[step] - first)).collect();
+    local[0] = at_centre;
+    // Lagrange's polynomials, which do not divide by the distance to a node.
+    let nodes = step_nodes();
+    let mut motion = vec![0.0; jet.nodes[segment][0].len()];
+    for (number, node) in nodes.iter().enumerate() {
+        let mut weight = vec![0.0; terms];
+        weight[0] = 1.0;
+        for other in nodes.iter().filter(|other| *other != node) {
+            let mut factor: Vec<f64> = local.iter().map(|own| own / (node - other)).collect();
+            factor[0] -= other / (node - other);
+            weight = product(&weight, &factor);
+        }
+        let values = &jet.nodes[segment][step * (STEP_NODES - 1) + number];
+        for (line, own) in motion.chunks_exact_mut(terms).zip(values.chunks_exact(terms)) {
+            space.accumulate(&weight, own, line);
+        }
+    }
+    Some(motion)
+}
