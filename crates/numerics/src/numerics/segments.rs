@@ -116,7 +116,8 @@ impl SegmentMotions {
                 let at = line * count + sample;
                 let value: f64 = weights.iter().zip(motion).map(|(weight, node)| weight * node[at]).sum();
                 if let Some((first, weights)) = &others {
-                    let other: f64 = weights.iter().zip(&motion[*first..]).map(|(weight, node)| weight * node[at]).sum();
+                    let other: f64 =
+                        weights.iter().zip(&motion[*first..]).map(|(weight, node)| weight * node[at]).sum();
                     doubts[line] = doubts[line].max((value - other).abs());
                 }
                 values[at] = value;

@@ -105,7 +105,8 @@ impl Branch {
         let of_line = |(line, own): (usize, &[f64])| {
             let least = doubts[line].max(surrogate.truncation(own));
             let values = &direct.values[line * points.len()..];
-            let of_points: Vec<f64> = points.iter().zip(values).map(|(point, value)| point.value(own) - value).collect();
+            let of_points: Vec<f64> =
+                points.iter().zip(values).map(|(point, value)| point.value(own) - value).collect();
             let of_told = |told: &Told| {
                 let of_fit = left_out.get(line).into_iter().flat_map(|line| told.fitted.iter().map(|&own| line[own]));
                 let others = told.held_out.iter().map(|&point| of_points[point]);
@@ -113,13 +114,11 @@ impl Branch {
             };
             piece.told().iter().map(of_told).collect::<Vec<f64>>()
         };
-        let lines: Vec<Vec<f64>> =
-            coefficients.chunks_exact(surrogate.terms()).enumerate().map(of_line).collect();
+        let lines: Vec<Vec<f64>> = coefficients.chunks_exact(surrogate.terms()).enumerate().map(of_line).collect();
         // At shares of the segment polynomials may do better, where its branch is long.
         let at_shares = &piece.errors().lines[segment];
-        let is_better = |(line, errors): (usize, &Vec<f64>)| {
-            errors[0] <= largest(at_shares.iter().map(|of_step| of_step[line]))
-        };
+        let is_better =
+            |(line, errors): (usize, &Vec<f64>)| errors[0] <= largest(at_shares.iter().map(|of_step| of_step[line]));
         let errors = (0..piece.told().len()).map(|told| lines.iter().map(|line| line[told]).collect()).collect();
         lines.iter().enumerate().all(is_better).then_some(Self { coefficients, errors })
     }

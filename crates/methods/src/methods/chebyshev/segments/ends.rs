@@ -96,9 +96,8 @@ mod tests {
 
     #[test]
     fn a_place_is_within_where_errors_cannot_lift_it() {
-        let beyond = |within: f64, change: f64, along: Option<f64>| {
-            Rival { within, error: 1e-3, change, along }.beyond(1e-3)
-        };
+        let beyond =
+            |within: f64, change: f64, along: Option<f64>| Rival { within, error: 1e-3, change, along }.beyond(1e-3);
         assert!(beyond(5e-3, f64::INFINITY, None) == 0.0);
         assert!((beyond(3e-3, f64::INFINITY, None) - 5e-4).abs() < 1e-15);
         assert!(beyond(1e-4, 0.04, None) == 0.0 && beyond(1e-4, 0.06, None) > 0.0);

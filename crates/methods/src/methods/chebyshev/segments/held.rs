@@ -78,7 +78,12 @@ impl<'p> AxisLines<'p> {
 
 impl<'l> Misses<'l> {
     /// In a row, whose outputs at the samples (output, sample) have been simulated; `at` are their points.
-    pub fn new(lines: &'l AxisLines<'l>, row: &SegmentRow, at: &[Point], simulated: impl Fn(usize) -> Vec<f64>) -> Self {
+    pub fn new(
+        lines: &'l AxisLines<'l>,
+        row: &SegmentRow,
+        at: &[Point],
+        simulated: impl Fn(usize) -> Vec<f64>,
+    ) -> Self {
         let predicted = row.outputs_at(at);
         let of_output = |output: usize| {
             let own = predicted[output * at.len()..][..at.len()].iter().zip(simulated(output)).zip(at);
@@ -101,9 +106,9 @@ impl<'l> Misses<'l> {
         let others: Vec<usize> =
             (0..count).filter(|sample| !lattice.contains(sample) && values[*sample].is_finite()).collect();
         let rest = largest(others.iter().map(|&sample| values[sample] - parted.parabolas(&self.lines.points[sample])));
-        let whole = largest(others.iter().map(|&sample| values[sample]));
-        let on_lattice = if rest < whole && rest < error { parted.on_lattice } else { Vec::new() };
-        let rest = if on_lattice.is_empty() { error } else { rest };
+        // How much is left between the lattice's points the other samples tell.
+        let is_less = !others.is_empty() && rest < error;
+        let (on_lattice, rest) = if is_less { (parted.on_lattice, rest) } else { (Vec::new(), error) };
         Missed { on_lattice, rest, misses: self, output }
     }
 
@@ -115,10 +120,10 @@ impl<'l> Misses<'l> {
         let known = |line: &Vec<usize>| -> Vec<usize> {
             line.iter().copied().filter(|&sample| values[sample].is_finite()).collect()
         };
-        let lines: Vec<Vec<usize>> =
-            self.lines.of_axes[axis].iter().map(known).filter(|line| line.len() > 1).collect();
+        let lines: Vec<Vec<usize>> = self.lines.of_axes[axis].iter().map(known).filter(|line| line.len() > 1).collect();
         let is_told = lines.iter().flatten().any(|&sample| self.lines.points[sample] == corner);
-        let range = |line: &Vec<usize>| Range::of(&line.iter().map(|&sample| values[sample]).collect::<Vec<_>>()).width();
+        let range =
+            |line: &Vec<usize>| Range::of(&line.iter().map(|&sample| values[sample]).collect::<Vec<_>>()).width();
         is_told.then(|| largest(lines.iter().map(range)))
     }
 }
@@ -196,9 +201,8 @@ impl Looked {
         let beside = surrogate.points((0..xi.len()).map(moved).collect());
         let at: Vec<(&Point, usize, f64)> = beside.iter().map(|point| (point, corner.segment, row.time)).collect();
         let values = row.outputs_on(&at);
-        let within = |axis: usize| {
-            corner.sign * (own - values[corner.output * at.len() + axis] + missed(&beside[axis].xi))
-        };
+        let within =
+            |axis: usize| corner.sign * (own - values[corner.output * at.len() + axis] + missed(&beside[axis].xi));
         let rises = |axis: &usize| {
             let rival = Rival { within: within(*axis), error: rest, change: change(&beside[*axis]), along: None };
             rival.beyond(rest) > 0.0

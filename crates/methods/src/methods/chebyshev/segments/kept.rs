@@ -40,8 +40,7 @@ impl CutSurrogate for KeptPieces {
     fn values(&self, row: usize, outputs: &[usize], samples: &[&[f64]], closure: &dyn Closure) -> Vec<f64> {
         let points: Vec<Vec<f64>> = samples.iter().map(|sample| self.domain.xi(sample)).collect();
         let Self { domain, pieces, outputs: count, rows, motions } = self;
-        let row =
-            BoxRow { domain, outputs: *count, pieces, motions: &motions[row], closure, time: rows[row].time };
+        let row = BoxRow { domain, outputs: *count, pieces, motions: &motions[row], closure, time: rows[row].time };
         row.some_outputs(outputs, &points)
     }
 }

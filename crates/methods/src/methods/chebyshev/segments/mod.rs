@@ -226,9 +226,8 @@ impl Composed {
     fn finished(self, ensemble: &dyn Ensemble, simulations: usize, pieces: Pieces, keep: Keep) -> MethodResult {
         let simulations = simulations + pieces.added;
         let keeps = keep == Keep::Statistics;
-        let kept = keeps.then(|| {
-            KeptPieces::new(ensemble.domain(), pieces, ensemble.outputs(), self.rows, self.motions)
-        });
+        let kept =
+            keeps.then(|| KeptPieces::new(ensemble.domain(), pieces, ensemble.outputs(), self.rows, self.motions));
         let kept = kept.map(|kept| KeptSurrogate::of_pieces(Arc::new(kept)));
         let result = self.bands.finish_keeping(simulations, self.simulated, kept);
         MethodResult { is_told_at_rows: true, ..result }

@@ -121,9 +121,8 @@ impl SegmentRow<'_> {
         let in_step = |error: fn(&SegmentErrors, usize, usize, usize) -> f64| {
             self.of_lines(places, here, |segment, point, line| {
                 let at_row = self.motion.and_then(|own| own.error(segment, self.piece.told_at(point), line));
-                let of_step = || {
-                    error(self.piece.errors_at(point), segment, surrogate.step(point, segment, self.time), line)
-                };
+                let of_step =
+                    || error(self.piece.errors_at(point), segment, surrogate.step(point, segment, self.time), line);
                 at_row.unwrap_or_else(of_step)
             })
         };
@@ -135,7 +134,8 @@ impl SegmentRow<'_> {
             // Errors that are unknown at times stay so; those on a branch are of the row's time.
             let is_less = |index: usize, own: f64, other: f64| other < own && !self.has_branch(places[index % count].0);
             let all = moved.iter_mut().zip(at_shares).enumerate();
-            all.filter(|(index, (own, other))| is_less(*index, **own, *other)).for_each(|(_, (own, other))| *own = other);
+            all.filter(|(index, (own, other))| is_less(*index, **own, *other))
+                .for_each(|(_, (own, other))| *own = other);
         }
         for end in 0..surrogate.ends.len() {
             add(&mut moved, &of([-1.0, 1.0].map(|sign| self.outputs_at(&self.beside(places, end, sign)))));
@@ -251,8 +251,13 @@ impl<'r> BoxRow<'r> {
     /// The row in each part.
     pub fn in_parts(&self) -> impl Iterator<Item = SegmentRow<'r>> {
         let Self { domain, outputs, pieces, motions, closure, time } = *self;
-        let of_part = move |(piece, motion): (&'r Piece, &'r RowMotion)| {
-            SegmentRow { domain, outputs, piece, motion: Some(motion), closure, time }
+        let of_part = move |(piece, motion): (&'r Piece, &'r RowMotion)| SegmentRow {
+            domain,
+            outputs,
+            piece,
+            motion: Some(motion),
+            closure,
+            time,
         };
         pieces.all.iter().zip(motions).map(of_part)
     }

@@ -1,0 +1,109 @@
+//! Rows in which no event passes through the box, or through a part of it: motions are expanded there at the row's time.
+//! Truths are a closed form, and another program's motion of a body that meets a post.
+
+use mbint::results::{Bounds, Method};
+
+use crate::common::{band, largest, output, ran, row, study_of};
+
+/// A ball of m0 that is thrown up at v0 against a stiff ceiling.
+const CEILING: &str = "
+parameters:
+  m0: { interval: [6.5, 6.7] }
+  g0: { interval: [9.743, 9.877] }
+  v0: { interval: [1.5485, 1.5715] }
+bodies: { ball: { mass: m0, coordinates: [y] } }
+effects: { f: { force: { on: ball, value: [0, \"-2.43e6*max(ball.y - 0.1182, 0) - m0*g0\"] } } }
+initial: { ball.y: 0, ball.vy: v0 }
+outputs: { y: ball.y, v: ball.vy }
+simulation: { duration: 0.294, step: 2e-3, output_step: 0.014 }
+";
+
+/// Height of the ball: thrown, within the ceiling, and falling.
+fn height([m, g, v]: [f64; 3], t: f64) -> f64 {
+    let at = (v * v - 2.0 * g * 0.1182).sqrt();
+    let omega = (2.43e6 / m).sqrt();
+    let (begins, lasts) = ((v - at) / g, 2.0 / omega * (at * omega / g).atan());
+    if t < begins {
+        v * t - 0.5 * g * t * t
+    } else if t < begins + lasts {
+        let (sin, cos) = (omega * (t - begins)).sin_cos();
+        0.1182 + at / omega * sin - g / (omega * omega) * (1.0 - cos)
+    } else {
+        let since = t - begins - lasts;
+        0.1182 - at * since - 0.5 * g * since * since
+    }
+}
+
+/// Least and largest height at the corners of the box.
+fn at_corners(t: f64) -> [f64; 2] {
+    let corner = |index: usize| {
+        let end = |axis: usize, [low, high]: [f64; 2]| if index >> axis & 1 == 0 { low } else { high };
+        height([end(0, [6.5, 6.7]), end(1, [9.743, 9.877]), end(2, [1.5485, 1.5715])], t)
+    };
+    let heights: Vec<f64> = (0..8).map(corner).collect();
+    [heights.iter().copied().fold(f64::INFINITY, f64::min), heights.iter().copied().fold(f64::NEG_INFINITY, f64::max)]
+}
+
+/// Asserts the ends of the height by a method in a row, and its error.
+#[track_caller]
+fn assert_height(bounds: &Bounds, method: Method, row: usize, stated: f64) {
+    let (own, [lower, upper]) = (band(output(bounds, "y"), method), at_corners(bounds.times[row]));
+    let error = own.error.total[row];
+    let off = largest([own.lower[row] - lower, own.upper[row] - upper]);
+    assert!(error <= stated, "{method:?} at {} s: {error:e}", bounds.times[row]);
+    assert!(off <= error + 1e-14, "{method:?} at {} s: off by {off:e} of {error:e}", bounds.times[row]);
+}
+
+/// Before the ceiling is met the motion is a polynomial of second degree in the parameters, and the mass has no part in
+/// it; behind it ends are at corners, where the motion is known.
+#[test]
+fn rows_that_no_event_passes_have_the_errors_of_steps() {
+    let request = "bounds: { chebyshev: { order: 2 }, taylor: { order: 3 }, scan: { points: 4 } }";
+    let (bounds, summary) = ran(study_of(&format!("{CEILING}{request}")));
+    assert!(summary.integration.is_some_and(|name| name.contains("between events")));
+    // It is met from 0.119 to 0.132 s, for 5 ms.
+    let free = |time: &f64| *time < 0.119 || *time > 0.145;
+    let rows = || (0..bounds.times.len()).filter(|&row| free(&bounds.times[row]));
+    assert!(rows().count() > 17);
+    for row in rows() {
+        assert_height(&bounds, Method::Chebyshev, row, 2e-11);
+        assert_height(&bounds, Method::Scan, row, 2e-11);
+        assert_height(&bounds, Method::Taylor, row, 1e-6);
+    }
+}
+
+/// In a row through which the event passes, motions that are still before it are expanded at its time, too: one sample
+/// is a little beyond, where its flight goes on.
+#[test]
+fn motions_are_expanded_a_little_beyond_their_events() {
+    let (bounds, _) = ran(study_of(&format!("{CEILING}bounds: {{ chebyshev: {{ order: 2 }} }}")));
+    let row = row(&bounds, 0.126);
+    let own = band(output(&bounds, "y"), Method::Chebyshev);
+    let (off, error) = ((own.lower[row] - at_corners(0.126)[0]).abs(), own.error.total[row]);
+    assert!(off < 1e-11, "{off:e} of {error:e}");
+}
+
+/// A body that flies past a post: behind it the largest height is at the end of a curved ridge, where climbs by linear
+/// programmes stop early. The truth is that of a Runge–Kutta method of order 8 that locates the contacts.
+#[test]
+fn ends_on_curved_ridges_are_found() {
+    let away = "sqrt((b.x - 2438)^2 + (b.y - Y0)^2)";
+    let push = format!("K0*max(170 - {away}, 0)/{away}");
+    let text = format!(
+        "
+parameters: {{ Y0: {{ interval: [1597.7, 1620.3] }}, K0: {{ interval: [21.32, 22.68] }} }}
+bodies: {{ b: {{ mass: 1, coordinates: [x, y] }} }}
+effects:
+  weight: {{ gravity: {{ acceleration: [0, -9.81] }} }}
+  post: {{ force: {{ on: b, value: [\"{push}*(b.x - 2438)\", \"{push}*(b.y - Y0)\"] }} }}
+initial: {{ b.x: 0, b.y: 0, b.vx: 132, b.vy: 183 }}
+outputs: {{ y: b.y }}
+simulation: {{ duration: 38.85, step: 0.05, output_step: 1.85 }}
+bounds: {{ taylor: {{ order: 4 }} }}
+"
+    );
+    let (bounds, _) = ran(study_of(&text));
+    let (row, own) = (row(&bounds, 29.6), band(output(&bounds, "y"), Method::Taylor));
+    let off = (own.upper[row] - 2582.386755).abs();
+    assert!(off < 1e-4, "{off:e} of {:e}", own.error.total[row]);
+}
