@@ -164,12 +164,21 @@ impl BandError {
 /// Estimates with their safety, none far below those beside it, and a share of the largest before it.
 fn held_up(estimates: &[f64], safety: f64, of_largest: f64) -> Vec<f64> {
     let mut lasting = 0.0_f64;
+    let held = |(own, beside): (&f64, f64)| {
+        lasting = lasting.max(*own);
+        let least = of_largest * lasting;
+        safety * if beside < least { least } else { beside }
+    };
+    estimates.iter().zip(held_beside(estimates)).map(held).collect()
+}
+
+/// Estimates of rows, none far below those beside it.
+pub fn held_beside(estimates: &[f64]) -> Vec<f64> {
     let held = |row: usize| {
         let beside = [row.wrapping_sub(1), row + 1].map(|row| estimates.get(row).copied().unwrap_or(0.0));
-        lasting = lasting.max(estimates[row]);
         // `max` passes over NaN.
-        let least = (TUNING.of_neighbour * beside[0]).max(TUNING.of_neighbour * beside[1]).max(of_largest * lasting);
-        safety * if estimates[row] < least { least } else { estimates[row] }
+        let least = (TUNING.of_neighbour * beside[0]).max(TUNING.of_neighbour * beside[1]);
+        if estimates[row] < least { least } else { estimates[row] }
     };
     (0..estimates.len()).map(held).collect()
 }

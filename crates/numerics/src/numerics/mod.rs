@@ -76,8 +76,8 @@ pub use decay::truncation;
 pub use design::{Design, MOST_AXES};
 pub use domain::{ParameterBox, Sample};
 pub use error::{
-    BandError, SAFETY_OF_STEPS, SAFETY_OF_SURROGATE, carries, largest, step_error, surrogate_error, time_error,
-    time_error_certified,
+    BandError, SAFETY_OF_STEPS, SAFETY_OF_SURROGATE, carries, held_beside, largest, step_error, surrogate_error,
+    time_error, time_error_certified,
 };
 pub use extent::Extent;
 pub use extremes::{extremes, extremes_from, extremes_near};

@@ -92,35 +92,18 @@ impl SegmentMotions {
         let (steps, count) = (&self.steps[segment], self.samples.len());
         let lines = self.nodes[segment].first().map_or(0, |node| node.len() / count.max(1));
         let (mut values, mut doubts) = (vec![0.0; lines * count], vec![0.0_f64; lines]);
-        let nodes = step_nodes();
         for sample in 0..count {
             let [begin, end] = [segment, segment + 1].map(|number| self.times[number][sample]);
-            let share = (time - begin) / (end - begin);
-            let (mut step, mut weights) = step_weights(steps, share);
-            let mut others = None;
-            if !(0.0..=1.0).contains(&share) {
-                // Steps are shorter beside events: the longest reaches farthest beyond.
-                let local;
-                (step, local) = nearest_step(steps, share);
-                if !(-most_beyond..=1.0 + most_beyond).contains(&local) {
-                    return None;
-                }
-                let of_all = lagrange_weights(&nodes, local);
-                weights.copy_from_slice(&of_all);
-                // The polynomial without the farthest node tells how far that through all is off.
-                let first = usize::from(local > 0.0);
-                others = Some((first, lagrange_weights(&nodes[first..first + STEP_NODES - 1], local)));
-            }
-            let motion = &self.nodes[segment][step * (STEP_NODES - 1)..][..STEP_NODES];
-            for line in 0..lines {
+            let BranchWeights { step, all, others } =
+                BranchWeights::new(steps, (time - begin) / (end - begin), most_beyond)?;
+            let nodes = &self.nodes[segment][step * (STEP_NODES - 1)..][..STEP_NODES];
+            for (line, doubt) in doubts.iter_mut().enumerate() {
                 let at = line * count + sample;
-                let value: f64 = weights.iter().zip(motion).map(|(weight, node)| weight * node[at]).sum();
+                values[at] = all.iter().zip(nodes).map(|(weight, node)| weight * node[at]).sum();
                 if let Some((first, weights)) = &others {
-                    let other: f64 =
-                        weights.iter().zip(&motion[*first..]).map(|(weight, node)| weight * node[at]).sum();
-                    doubts[line] = doubts[line].max((value - other).abs());
+                    let other: f64 = weights.iter().zip(&nodes[*first..]).map(|(weight, node)| weight * node[at]).sum();
+                    *doubt = doubt.max((values[at] - other).abs());
                 }
-                values[at] = value;
             }
         }
         Some(BranchMotion { values, doubts })
@@ -204,15 +187,40 @@ pub fn step_weights(ends: &[f64], share: f64) -> (usize, [f64; STEP_NODES]) {
     (step, weights)
 }
 
-/// The step of a segment that is least beyond a share, in its lengths, and the place of the share in it.
+/// Weights of the nodes of a step on the branch of a segment.
+struct BranchWeights {
+    step: usize,
+    all: [f64; STEP_NODES],
+    /// Beyond the segment, the number of the first and the weights of all nodes but the farthest: what the polynomial
+    /// through these differs by tells how far that through all is off.
+    others: Option<(usize, Vec<f64>)>,
+}
+
+impl BranchWeights {
+    fn new(steps: &[f64], share: f64, most_beyond: f64) -> Option<Self> {
+        if (0.0..=1.0).contains(&share) {
+            let (step, all) = step_weights(steps, share);
+            return Some(Self { step, all, others: None });
+        }
+        let (step, local) = nearest_step(steps, share);
+        let (nodes, first) = (step_nodes(), usize::from(local > 0.0));
+        let others = lagrange_weights(&nodes[first..first + STEP_NODES - 1], local);
+        let all = lagrange_weights(&nodes, local).try_into().ok()?;
+        let is_near = (-most_beyond..=1.0 + most_beyond).contains(&local);
+        is_near.then_some(Self { step, all, others: Some((first, others)) })
+    }
+}
+
+/// The step of a segment that is least beyond a share, in its own lengths, and the place of the share in it: steps are
+/// shorter beside events, so that a longer one before reaches farther.
 pub fn nearest_step(ends: &[f64], share: f64) -> (usize, f64) {
     let local = |step: usize| {
         let begin = step.checked_sub(1).map_or(0.0, |before| ends[before]);
         (share - begin) / (ends[step] - begin)
     };
-    let beyond = |step: &usize| (local(*step) - 0.5).abs();
-    let better = |a: usize, b: usize| if beyond(&b) < beyond(&a) { b } else { a };
-    let step = (0..ends.len()).reduce(better).unwrap_or(0);
+    let beyond = |step: usize| (local(step) - 0.5).abs();
+    let nearer = |a: usize, b: usize| if beyond(b) < beyond(a) { b } else { a };
+    let step = (0..ends.len()).reduce(nearer).unwrap_or(0);
     (step, local(step))
 }
 
@@ -265,5 +273,30 @@ mod tests {
             let value: f64 = weights.iter().zip(values).map(|(weight, value)| weight * value).sum();
             assert!((value - f(share)).abs() < 1e-12, "{share}: {value}");
         }
+    }
+
+    /// Motions y = e^t, v = e^t of samples whose segments end at 0.9 and 1 s, in steps that become shorter.
+    fn grown() -> SegmentMotions {
+        let (steps, ends) = (vec![0.5, 0.9, 0.99, 1.0], [0.9, 1.0]);
+        let node = |number: usize| {
+            let step = (number / (STEP_NODES - 1)).min(steps.len() - 1);
+            let begin = step.checked_sub(1).map_or(0.0, |before: usize| steps[before]);
+            let share = begin + (steps[step] - begin) * step_nodes()[number - step * (STEP_NODES - 1)];
+            [ends, ends].concat().iter().map(|end| (share * end).exp()).collect::<Vec<f64>>()
+        };
+        let nodes = vec![(0..=steps.len() * (STEP_NODES - 1)).map(node).collect()];
+        SegmentMotions { samples: vec![0, 1], times: vec![vec![0.0; 2], ends.to_vec()], nodes, steps: vec![steps] }
+    }
+
+    #[test]
+    fn motions_go_on_beyond_their_segments() {
+        let motions = grown();
+        for time in [-0.3, 0.0, 0.45, 0.95, 1.3] {
+            let BranchMotion { values, doubts } = motions.at(0, time, 2.0).unwrap();
+            let off = values.iter().map(|value| (value - f64::exp(time)).abs()).fold(0.0, f64::max);
+            assert!(off <= doubts[0].max(1e-8) && off < 1e-4, "{off:e} of {:e} at {time} s", doubts[0]);
+            assert_eq!(!(0.0..=0.9).contains(&time), doubts[0] > 0.0, "{time}");
+        }
+        assert!(motions.at(0, 3.0, 2.0).is_none());
     }
 }

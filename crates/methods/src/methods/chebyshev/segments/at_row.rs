@@ -185,3 +185,40 @@ fn jet_at(space: &JetSpace, jet: &SegmentMotions, segment: usize, time: f64) -> 
     }
     Some(motion)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// t³ + 2t in a segment that lasts 1 + 0.1 ξ + 0.02 ξ² s: at a time no parameter has a part in it, and it goes on
+    /// beyond the segment.
+    #[test]
+    fn a_jet_at_a_time_does_not_know_of_its_segment() {
+        let space = JetSpace::new(1, 3);
+        let length = vec![1.0, 0.1, 0.02, 0.0];
+        let steps = vec![0.6, 0.95, 1.0];
+        let product = |a: &[f64], b: &[f64]| {
+            let mut out = vec![0.0; space.len()];
+            space.mul(a, b, &mut out);
+            out
+        };
+        let node = |number: usize| -> Vec<f64> {
+            let step = (number / (STEP_NODES - 1)).min(steps.len() - 1);
+            let begin = step.checked_sub(1).map_or(0.0, |before: usize| steps[before]);
+            let share = begin + (steps[step] - begin) * step_nodes()[number - step * (STEP_NODES - 1)];
+            let time: Vec<f64> = length.iter().map(|term| share * term).collect();
+            let cube = product(&time, &product(&time, &time));
+            cube.iter().zip(&time).map(|(cube, time)| cube + 2.0 * time).collect()
+        };
+        let nodes = vec![(0..=steps.len() * (STEP_NODES - 1)).map(node).collect()];
+        let jet =
+            SegmentMotions { samples: vec![0], times: vec![vec![0.0; 4], length.clone()], nodes, steps: vec![steps] };
+        for time in [0.0, 0.3, 0.98, 1.1, 1.3] {
+            let found = jet_at(&space, &jet, 0, time).unwrap();
+            let expected = [time.powi(3) + 2.0 * time, 0.0, 0.0, 0.0];
+            let off = largest(found.iter().zip(expected).map(|(own, other)| own - other));
+            assert!(off < 1e-10, "{found:?} at {time} s");
+        }
+        assert!(jet_at(&space, &jet, 0, 3.0).is_none());
+    }
+}

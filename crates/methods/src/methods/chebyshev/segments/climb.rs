@@ -5,31 +5,27 @@
 //! programme in a trust region that is as narrow across these surfaces as it has to be: the steepest way that leaves
 //! neither the box nor the segment. Then it is moved to the surface that it was to reach.
 
-use super::ends::{Ends, HeldCorner};
-use super::held::{Corner, Looked, Misses};
-use super::is_corner;
 use super::row::SegmentRow;
 use super::seeds::Lattice;
 use super::surrogate::Point;
 use super::tuning::TUNING;
-use crate::numerics::{Extent, Range, extremes_from};
 
 /// A place on the way to an extreme.
 #[derive(Clone)]
-struct Climb {
-    output: usize,
+pub(super) struct Climb {
+    pub output: usize,
     /// −1 for the least value, 1 for the largest.
-    sign: f64,
-    segment: usize,
-    point: Point,
-    value: f64,
-    radius: f64,
-    of_share: f64,
+    pub sign: f64,
+    pub segment: usize,
+    pub point: Point,
+    pub value: f64,
+    pub radius: f64,
+    pub of_share: f64,
 }
 
 impl Climb {
     /// The share of the segment that a point is at.
-    fn share(&self, point: &Point, time: f64) -> f64 {
+    pub fn share(&self, point: &Point, time: f64) -> f64 {
         let [begin, end] = [point.times[self.segment], point.times[self.segment + 1]];
         (time - begin) / (end - begin)
     }
@@ -43,104 +39,8 @@ struct Move {
     of_margins: Vec<Vec<f64>>,
 }
 
-/// The outputs' ranges, with the places of their ends and their errors; samples tell of their misses at corners.
-pub(super) fn ends(row: &SegmentRow, lattice: &Lattice, misses: Option<&Misses>) -> Vec<Ends> {
-    let (seeds, mut climbs) = begun(row, lattice);
-    for _ in 0..TUNING.moves {
-        if !step(row, &mut climbs) {
-            break;
-        }
-    }
-    if !row.is_common() {
-        TUNING.shares_of_ridge.iter().for_each(|&share| across(row, &mut climbs, share));
-    }
-    polish(row, &mut climbs);
-    let of_outputs: Vec<[Option<&Climb>; 2]> = (0..row.outputs).map(|output| best(&climbs, output)).collect();
-    let extents: Vec<Extent> = of_outputs.iter().map(|found| extent(row, *found)).collect();
-    let places = extents.iter().flat_map(|extent| extent.places.iter().cloned()).collect();
-    let points = row.piece.surrogate.points(places).into_iter().zip(of_outputs.iter().flatten());
-    let in_segment = |(point, climb): (Point, &Option<&Climb>)| {
-        (climb.map_or_else(|| point.segment(row.time), |climb| climb.segment), point)
-    };
-    let places: Vec<(usize, Point)> = points.map(in_segment).collect();
-    let errors = row.errors(&places, &row.outputs_in(&places));
-    let count = 2 * row.outputs;
-    let errors = |output: usize| [0, 1].map(|end| errors[output * count + 2 * output + end]);
-    let corners: Vec<[Option<Climb>; 2]> =
-        of_outputs.iter().map(|ends| ends.map(|climb| climb.and_then(|climb| corner(row, climb)))).collect();
-    let has_corners = corners.iter().flatten().any(Option::is_some);
-    let ends = || climbs.iter().filter(|climb| !is_corner(&climb.point.xi)).map(|own| (own.segment, own.point.clone()));
-    let looked = has_corners.then(|| Looked::at(row, seeds.into_iter().chain(ends()).collect()));
-    let held = |climb: &Option<Climb>, error: f64| {
-        let Climb { output, sign, segment, value, point, .. } = climb.as_ref()?;
-        let corner = Corner { output: *output, sign: *sign, segment: *segment, value: *value, error, point };
-        let beyond = looked.as_ref()?.beyond(row, &corner, misses);
-        (beyond < error).then(|| HeldCorner { xi: point.xi.clone(), beyond })
-    };
-    let all = extents.into_iter().zip(&corners).enumerate();
-    all.map(|(output, (extent, found))| {
-        let errors = errors(output);
-        Ends { extent, errors, corners: [0, 1].map(|end| held(&found[end], errors[end])) }
-    })
-    .collect()
-}
-
-/// The corner of the box that an end may be at: of parameters that change next to nothing any value is as good.
-fn corner(row: &SegmentRow, climb: &Climb) -> Option<Climb> {
-    let mut own = climb.clone();
-    for axis in 0..own.point.xi.len() {
-        if own.point.xi[axis].abs() == 1.0 {
-            continue;
-        }
-        let moved = [-1.0, 1.0].map(|xi| [&own.point.xi[..axis], &[xi], &own.point.xi[axis + 1..]].concat());
-        let points = row.piece.surrogate.points(moved.to_vec());
-        let at: Vec<(&Point, usize, f64)> = points.iter().map(|point| (point, own.segment, row.time)).collect();
-        let values = row.outputs_on(&at);
-        let height = |end: usize| own.sign * values[own.output * 2 + end];
-        let end = usize::from(height(1) > height(0));
-        (own.value, own.point) = (values[own.output * 2 + end], points[end].clone());
-    }
-    let in_segment = own.point.segment(row.time) == own.segment || climb.point.xi == own.point.xi;
-    let inside = climb.point.xi == own.point.xi || own.point.is_inside();
-    (in_segment && inside).then_some(own)
-}
-
-/// The best climbs for both ends of an output.
-fn best(climbs: &[Climb], output: usize) -> [Option<&Climb>; 2] {
-    [-1.0, 1.0].map(|sign| {
-        let own = climbs.iter().filter(|climb| climb.output == output && climb.sign == sign);
-        own.reduce(|a, b| if sign * b.value > sign * a.value { b } else { a })
-    })
-}
-
-/// The range that two climbs have found.
-fn extent(row: &SegmentRow, found: [Option<&Climb>; 2]) -> Extent {
-    let [Some(least), Some(most)] = found else { return Extent::unknown(row.domain.dimension()) };
-    let range = Range { lower: least.value, upper: most.value };
-    Extent::at(range, 0.0, [least, most].map(|climb| climb.point.xi.clone()))
-}
-
-/// Adds where quadratics go on from the best climbs: along a curved ridge linear programmes end early.
-fn polish(row: &SegmentRow, climbs: &mut Vec<Climb>) {
-    let known: Vec<Extent> = (0..row.outputs).map(|output| extent(row, best(climbs, output))).collect();
-    let polished = extremes_from(&known, |points| {
-        let points = row.piece.surrogate.points(points.to_vec());
-        let values = row.outputs_at(&points).into_iter().enumerate();
-        values.map(|(at, value)| if points[at % points.len()].is_inside() { value } else { f64::NAN }).collect()
-    });
-    for (output, (known, found)) in known.into_iter().zip(polished).enumerate() {
-        let better = [found.range.lower < known.range.lower, found.range.upper > known.range.upper];
-        let values = [found.range.lower, found.range.upper];
-        for (end, xi) in found.places.into_iter().enumerate().filter(|(end, _)| better[*end]) {
-            let point = row.piece.surrogate.points(vec![xi]).swap_remove(0);
-            let (segment, sign) = (point.segment(row.time), [-1.0, 1.0][end]);
-            climbs.push(Climb { output, sign, segment, point, value: values[end], radius: 0.0, of_share: 0.0 });
-        }
-    }
-}
-
 /// Places that are looked at, each in its segment, and climbs from the best of them.
-fn begun(row: &SegmentRow, lattice: &Lattice) -> (Vec<(usize, Point)>, Vec<Climb>) {
+pub(super) fn begun(row: &SegmentRow, lattice: &Lattice) -> (Vec<(usize, Point)>, Vec<Climb>) {
     let time = row.time;
     let surrogate = &row.piece.surrogate;
     let mut seeds: Vec<(usize, Point)> =
@@ -205,7 +105,7 @@ fn begun(row: &SegmentRow, lattice: &Lattice) -> (Vec<(usize, Point)>, Vec<Climb
 }
 
 /// Moves all climbs that have not ended; whether there are any.
-fn step(row: &SegmentRow, climbs: &mut [Climb]) -> bool {
+pub(super) fn step(row: &SegmentRow, climbs: &mut [Climb]) -> bool {
     let mut going: Vec<&mut Climb> = climbs.iter_mut().filter(|climb| climb.radius > TUNING.least_radius).collect();
     if going.is_empty() {
         return false;
@@ -286,72 +186,13 @@ fn step(row: &SegmentRow, climbs: &mut [Climb]) -> bool {
     true
 }
 
-/// Moves all climbs to the vertex of the parabola across surfaces of equal share, through points that are so far to
-/// either side: a contact's ridge is so narrow there that trust regions end before it.
-fn across(row: &SegmentRow, climbs: &mut [Climb], share: f64) {
-    if climbs.is_empty() {
-        return;
-    }
-    let k = row.domain.dimension();
-    let time = row.time;
-    let points = |all: &[Vec<f64>]| row.piece.surrogate.points(all.to_vec());
-    let values = |points: &[Point], climbs: &[Climb]| {
-        let sides = points.len() / climbs.len().max(1);
-        let at: Vec<(&Point, usize, f64)> =
-            points.iter().enumerate().map(|(index, point)| (point, climbs[index / sides].segment, time)).collect();
-        let values = row.outputs_on(&at);
-        let of = |index: usize| {
-            let climb = &climbs[index / sides];
-            let is_inside = points[index].is_inside() && (0.0..=1.0).contains(&climb.share(&points[index], time));
-            if is_inside { climb.sign * values[climb.output * at.len() + index] } else { f64::NAN }
-        };
-        (0..points.len()).map(of).collect::<Vec<f64>>()
-    };
-    let moved = |climb: &Climb, axis: usize| {
-        let mut xi = climb.point.xi.clone();
-        xi[axis] += inward(xi[axis]);
-        xi
-    };
-    let beside: Vec<Vec<f64>> = climbs.iter().flat_map(|own| (0..k).map(move |axis| moved(own, axis))).collect();
-    let beside = points(&beside);
-    let of_climb = |(climb, beside): (&Climb, &[Point])| -> Vec<f64> {
-        let here = climb.share(&climb.point, time);
-        let slope = |axis: usize| (climb.share(&beside[axis], time) - here) / inward(climb.point.xi[axis]);
-        let slopes: Vec<f64> = (0..k).map(slope).collect();
-        let square: f64 = slopes.iter().map(|slope| slope * slope).sum();
-        slopes.iter().map(|slope| share * slope / square).collect()
-    };
-    let ways: Vec<Vec<f64>> = climbs.iter().zip(beside.chunks_exact(k)).map(of_climb).collect();
-    let along = |climb: &Climb, way: &[f64], by: f64| -> Vec<f64> {
-        climb.point.xi.iter().zip(way).map(|(xi, way)| (xi + by * way).clamp(-1.0, 1.0)).collect()
-    };
-    let pairs: Vec<Vec<f64>> =
-        climbs.iter().zip(&ways).flat_map(|(climb, way)| [-1.0, 1.0].map(|by| along(climb, way, by))).collect();
-    let of_pairs = values(&points(&pairs), climbs);
-    let vertex = |((climb, way), pair): ((&Climb, &Vec<f64>), &[f64])| {
-        let (below, above) = (pair[0] - climb.sign * climb.value, pair[1] - climb.sign * climb.value);
-        let by = 0.5 * (below - above) / (below + above);
-        // A point that is not known leaves the climb where it is.
-        let by = if below + above < 0.0 { by.clamp(-1.0, 1.0) } else { 0.0 };
-        along(climb, way, by)
-    };
-    let ends: Vec<Vec<f64>> = climbs.iter().zip(&ways).zip(of_pairs.chunks_exact(2)).map(vertex).collect();
-    let ends = points(&ends);
-    let of_ends = values(&ends, climbs);
-    for ((climb, point), value) in climbs.iter_mut().zip(ends).zip(of_ends) {
-        if value > climb.sign * climb.value {
-            (climb.value, climb.point) = (climb.sign * value, point);
-        }
-    }
-}
-
 /// The largest radius of trust regions in the share of the segment: any, where no event passes through the part.
 fn widest_share(row: &SegmentRow) -> f64 {
     if row.is_common() { f64::INFINITY } else { TUNING.radius_of_share }
 }
 
 /// A difference that stays in the box.
-fn inward(xi: f64) -> f64 {
+pub(super) fn inward(xi: f64) -> f64 {
     if xi > 0.0 { -TUNING.step_of_slopes } else { TUNING.step_of_slopes }
 }
 

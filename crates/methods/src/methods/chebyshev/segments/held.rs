@@ -217,3 +217,44 @@ impl Looked {
         places.map(|rival| rival.beyond(rest)).fold(near, f64::max)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::numerics::{spread, validation};
+
+    fn misses<'l>(lines: &'l AxisLines<'l>, of: impl Fn(&[f64]) -> f64) -> Misses<'l> {
+        Misses { lines, values: lines.points.iter().map(|xi| of(xi)).collect() }
+    }
+
+    #[test]
+    fn parabolas_go_through_misses_on_the_lattice() {
+        let points = validation(2, 4);
+        let lines = AxisLines::new(&points);
+        let of = |xi: &[f64]| 0.3 - xi[0] + 0.5 * xi[0] * xi[0] * xi[1] - 0.2 * xi[1] * xi[1];
+        let own = misses(&lines, of);
+        let missed = own.of(0, 2.0);
+        for xi in spread(2, 20) {
+            assert!((missed.parabolas(&xi) - of(&xi)).abs() < 1e-15);
+        }
+        assert!(missed.rest < 1e-15);
+        // A cube is what they lack: at most 2/√27 of it.
+        let own = misses(&lines, |xi| of(xi) + 0.1 * xi[0].powi(3));
+        let rest = own.of(0, 2.0).rest;
+        assert!(rest > 0.03 && rest <= 0.1 * 2.0 / 27_f64.sqrt(), "{rest}");
+    }
+
+    /// A parameter that misses do not depend on, and one that samples outside of the part hide.
+    #[test]
+    fn misses_change_along_the_axes_that_they_depend_on() {
+        let points = validation(2, 4);
+        let lines = AxisLines::new(&points);
+        let own = misses(&lines, |xi| 1e-3 * xi[1].powi(2));
+        assert_eq!(own.along(0, 0, &[1.0, -1.0]), Some(0.0));
+        assert_eq!(own.along(0, 1, &[1.0, -1.0]), Some(1e-3));
+        let hidden = misses(&lines, |xi| if xi[1] > -1.0 { f64::NAN } else { 1e-3 * xi[0] });
+        assert_eq!(hidden.along(0, 0, &[1.0, -1.0]), Some(2e-3));
+        assert_eq!(hidden.along(0, 1, &[1.0, -1.0]), None);
+        assert!(hidden.of(0, 2.0).on_lattice.is_empty());
+    }
+}

@@ -10,16 +10,17 @@
 //! - `growth`: the terms of polynomials of many parameters;
 //! - `kept`: all of them, kept after the run;
 //! - `of_part`: a number that motions have in a part of the box only;
-//! - `at_row`: motions that are expanded at a row's time, where no event passes through a part then;
+//! - `at_row`: motions at a row's time, on branches of segments that go on a little beyond their events;
 //! - `row`: the outputs at a time, and how far the polynomials' errors move them;
 //! - `seeds`: where a range is searched for, and `climb`: the search within the part of the box that is in a segment,
-//!   and on its surfaces; `ends`: the ends that it finds;
-//! - `held`: which of these are a corner's, however the polynomials err.
+//!   and on its surfaces; `ridges`: where it ends early; `extremes`: the `ends` that it finds;
+//! - `held`: how far other places may pass a corner, however the polynomials err.
 
 mod at_row;
 mod basis;
 mod climb;
 mod ends;
+mod extremes;
 mod fitting;
 mod growth;
 mod held;
@@ -28,6 +29,7 @@ mod of_part;
 mod parts;
 mod piece;
 mod pieces;
+mod ridges;
 mod row;
 mod sampling;
 mod seeds;
@@ -48,7 +50,7 @@ use crate::methods::kept::{CutRow, KeptSurrogate};
 use crate::methods::request::Keep;
 use crate::methods::result::{BandBuilder, Estimate, MethodResult};
 use crate::methods::validation::Validation;
-use crate::numerics::{Extent, Range, SAFETY_OF_SURROGATE, Sample, Surrogate, largest};
+use crate::numerics::{Extent, Range, SAFETY_OF_SURROGATE, Sample, Surrogate, held_beside, largest};
 use at_row::{Expansion, RowMotion};
 use ends::Ends;
 use growth::Growth;
@@ -290,7 +292,7 @@ fn composed(
         };
         let of_part = |(row_of, (lattice, at)): (SegmentRow, (&Lattice, &Vec<Point>))| {
             let misses = Misses::new(&lines, &row_of, at, |output| validation.direct.at(row, output));
-            let mut ends = climb::ends(&row_of, lattice, Some(&misses));
+            let mut ends = extremes::ends(&row_of, lattice, Some(&misses));
             ends.iter_mut().enumerate().for_each(|(output, own)| own.hold(|xi| at_corner(output, xi)));
             ends
         };
@@ -317,8 +319,15 @@ fn composed(
         .collect()
     };
     let known = |row: usize| ensemble.go_on().map(|()| estimate(row));
-    let found: Vec<Vec<Estimate>> =
+    let mut found: Vec<Vec<Estimate>> =
         (0..ensemble.rows()).into_par_iter().map(known).collect::<Result<_, EnsembleError>>()?;
+    if pieces.all.len() > 1 {
+        // Beside a surface samples may miss in one row what they tell in the next one.
+        for output in 0..ensemble.outputs() {
+            let errors: Vec<f64> = found.iter().map(|row| row[output].error).collect();
+            found.iter_mut().zip(held_beside(&errors)).for_each(|(row, error)| row[output].error = error);
+        }
+    }
     let mut bands = BandBuilder::new(ensemble.outputs(), ensemble.rows());
     let shares = found.iter().flat_map(|row| row.iter().zip(&validation.spans));
     let worst = largest(shares.map(|(estimate, &span)| share(estimate, span)));

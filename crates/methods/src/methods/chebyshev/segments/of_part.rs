@@ -12,7 +12,7 @@ use super::pieces::highest_degree;
 use super::row::SegmentRow;
 use super::seeds::Lattice;
 use super::tuning::TUNING;
-use super::{climb, joined};
+use super::{extremes, joined};
 use crate::methods::closure::Closure;
 use crate::methods::ensemble::{Ensemble, EnsembleError};
 use crate::methods::validation::Validation;
@@ -87,7 +87,7 @@ pub fn range_in_part(
     let of_piece = |piece: &Piece| {
         let lattice = Lattice::new(&piece.surrogate, &piece.samples, k);
         let row = SegmentRow { domain, outputs: 1, piece, motion: None, closure: &Number, time: middle };
-        climb::ends(&row, &lattice, None)
+        extremes::ends(&row, &lattice, None)
     };
     let parts: Vec<Vec<Ends>> = pieces.iter().filter(|piece| piece.surrogate.segments() > 0).map(of_piece).collect();
     let (extent, moved) = joined(&parts, 0);
