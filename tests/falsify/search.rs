@@ -59,20 +59,27 @@ pub fn ranges(term: &Term, times: &[f64], level: u32, needed: &dyn Fn(usize) -> 
     (0..term.channels.len()).map(|channel| if needed(channel) { of_channel(channel) } else { Vec::new() }).collect()
 }
 
-/// Whether the curves change with a parameter, in the middle of the others' intervals or at their ends: a grid has the
-/// more points the fewer parameters it has. Motions at both its ends may pass what those between them meet.
+/// Whether the curves change with a parameter, in the middle of the others' intervals or at a corner of these: a grid
+/// has the more points the fewer parameters it has. Motions at both its ends may pass what those between them meet, and
+/// only those at one corner may meet it at all.
 fn matters(term: &Term, parameters: &[Parameter], which: usize, times: &[f64]) -> bool {
-    let curves = |others: f64, own: f64| {
+    let curves = |others: &dyn Fn(usize) -> f64, own: f64| {
         let value = |(i, parameter): (usize, &Parameter)| {
-            parameter.value + parameter.half * if i == which { own } else { others }
+            parameter.value + parameter.half * if i == which { own } else { others(i) }
         };
         (term.curves)(&parameters.iter().enumerate().map(value).collect::<Vec<f64>>(), times)
     };
-    let changes = |others: f64| {
+    let changes = |others: &dyn Fn(usize) -> f64| {
         let first = curves(others, -1.0);
         (1..=LOOKS).any(|look| curves(others, 2.0 * look as f64 / LOOKS as f64 - 1.0) != first)
     };
-    parameters[which].half > 0.0 && [0.0, -1.0, 1.0].into_iter().any(changes)
+    let others: Vec<usize> = (0..parameters.len()).filter(|&i| i != which && parameters[i].half > 0.0).collect();
+    let corner = |number: usize, i: usize| {
+        let place = others.iter().position(|&other| other == i).unwrap_or(0);
+        if number >> place & 1 == 0 { -1.0 } else { 1.0 }
+    };
+    let at_corners = || (0..1_usize << others.len()).any(|number| changes(&|i| corner(number, i)));
+    parameters[which].half > 0.0 && (changes(&|_| 0.0) || at_corners())
 }
 
 /// From a point of a grid with so many points along each axis uphill, at most one cell away, by Rosenbrock's method

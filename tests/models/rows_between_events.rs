@@ -1,4 +1,4 @@
-//! Rows in which no event passes through the box, or through a part of it: motions are expanded there at the row's time.
+//! Rows in which no event passes through the box, or through a part of it: motions are expanded at the row's time.
 //! Truths are a closed form, and another program's motion of a body that meets a post.
 
 use mbint::results::{Bounds, Method};

@@ -83,8 +83,8 @@ impl BandError {
         Self::of(surrogate, ranges, time, span, tolerance, tolerance.is_none())
     }
 
-    /// The same where the surrogate's errors are told row by row, at times beside it too: a large error within a contact
-    /// says nothing of the rows before and behind it.
+    /// The same where the surrogate's errors are told row by row, and beside it: a large error within a contact says
+    /// nothing of the rows before and behind it.
     pub fn told(ranges: &[Range], surrogate: &[f64], time: &[f64], span: f64, tolerance: Option<f64>) -> Self {
         let surrogate = surrogate.iter().map(|error| SAFETY_OF_SURROGATE * error).collect();
         Self::of(surrogate, ranges, time, span, tolerance, false)

@@ -86,8 +86,8 @@ impl SegmentMotions {
         }
     }
 
-    /// Positions and velocities at a time on a segment's branch, which goes on beyond its ends; `None` where a sample is
-    /// beyond all steps there by more than so many times their length.
+    /// Positions and velocities at a time on a segment's branch, which goes on beyond its ends; `None` where a sample
+    /// is beyond all steps there by more than so many times their length.
     pub fn at(&self, segment: usize, time: f64, most_beyond: f64) -> Option<BranchMotion> {
         let (steps, count) = (&self.steps[segment], self.samples.len());
         let lines = self.nodes[segment].first().map_or(0, |node| node.len() / count.max(1));

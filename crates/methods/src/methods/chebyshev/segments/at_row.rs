@@ -9,9 +9,9 @@ use super::surrogate::Point;
 use super::tuning::TUNING;
 use crate::numerics::{STEP_NODES, SegmentMotions, Surrogate, SurrogateWork, largest, nearest_step, step_nodes};
 
-/// What gives polynomials of values.
+/// Where polynomials of values come from.
 #[derive(Clone, Copy)]
-pub(super) enum Expansion<'e> {
+pub(super) enum PolynomialSource<'e> {
     Grid(&'e Surrogate),
     Jets(&'e JetSpace),
 }
@@ -36,11 +36,11 @@ struct Branch {
 
 impl RowMotion {
     /// Of all rows at these times.
-    pub fn of_rows(piece: &Piece, lattice: &Lattice, times: &[f64], expansion: Expansion) -> Vec<Self> {
+    pub fn of_rows(piece: &Piece, lattice: &Lattice, times: &[f64], source: PolynomialSource) -> Vec<Self> {
         let of_row = |&time: &f64| {
             let segments = 0..piece.surrogate.segments();
             let branches: Vec<Option<Branch>> =
-                segments.map(|segment| Branch::new(piece, segment, time, expansion)).collect();
+                segments.map(|segment| Branch::new(piece, segment, time, source)).collect();
             let common = common_segment(piece, lattice, time);
             let is_common = common.is_some_and(|segment| branches[segment].is_some());
             Self { branches, is_common }
@@ -79,7 +79,7 @@ impl RowMotion {
 }
 
 impl Branch {
-    fn new(piece: &Piece, segment: usize, time: f64, expansion: Expansion) -> Option<Self> {
+    fn new(piece: &Piece, segment: usize, time: f64, source: PolynomialSource) -> Option<Self> {
         let surrogate = &piece.surrogate;
         let direct = piece.motions.held_out.at(segment, time, TUNING.beyond_longest)?;
         let mut doubts = direct.doubts;
@@ -90,7 +90,7 @@ impl Branch {
         };
         // Of a fit, by how much it misses each of its samples where that is left out.
         let mut left_out = Vec::new();
-        let coefficients = match (surrogate.squares(), expansion) {
+        let coefficients = match (surrogate.squares(), source) {
             (Some(squares), _) => {
                 let values = of_samples()?;
                 let fits = values.chunks_exact(piece.samples.len()).map(|line| squares.fit(line));
@@ -98,8 +98,8 @@ impl Branch {
                 left_out = missed;
                 own.concat()
             }
-            (None, Expansion::Grid(grid)) => grid.coefficients(&of_samples()?, &mut SurrogateWork::default()),
-            (None, Expansion::Jets(space)) => jet_at(space, &piece.motions.fitted, segment, time)?,
+            (None, PolynomialSource::Grid(grid)) => grid.coefficients(&of_samples()?, &mut SurrogateWork::default()),
+            (None, PolynomialSource::Jets(space)) => jet_at(space, &piece.motions.fitted, segment, time)?,
         };
         let points = surrogate.points(piece.motions.points.clone());
         let of_line = |(line, own): (usize, &[f64])| {
@@ -117,10 +117,10 @@ impl Branch {
         let lines: Vec<Vec<f64>> = coefficients.chunks_exact(surrogate.terms()).enumerate().map(of_line).collect();
         // At shares of the segment polynomials may do better, where its branch is long.
         let at_shares = &piece.errors().lines[segment];
-        let is_better =
-            |(line, errors): (usize, &Vec<f64>)| errors[0] <= largest(at_shares.iter().map(|of_step| of_step[line]));
+        let at_share = |line: usize| largest(at_shares.iter().map(|of_step| of_step[line]));
         let errors = (0..piece.told().len()).map(|told| lines.iter().map(|line| line[told]).collect()).collect();
-        lines.iter().enumerate().all(is_better).then_some(Self { coefficients, errors })
+        let is_better = lines.iter().enumerate().all(|(line, errors)| errors[0] <= at_share(line));
+        is_better.then_some(Self { coefficients, errors })
     }
 }
 

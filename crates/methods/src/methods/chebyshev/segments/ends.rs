@@ -40,7 +40,7 @@ impl Rival {
         let near = SAFETY_OF_SURROGATE * self.change * error.max(self.error);
         let along = SAFETY_OF_SURROGATE * self.along.unwrap_or(f64::INFINITY);
         let beyond = near.min(apart).min(along) - self.within;
-        // What is not known may be anywhere. All errors get their safety in the end.
+        // An unknown value may be anywhere. All errors get their safety in the end.
         if beyond.is_nan() { f64::INFINITY } else { beyond.max(0.0) / SAFETY_OF_SURROGATE }
     }
 }

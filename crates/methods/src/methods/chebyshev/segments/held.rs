@@ -172,7 +172,7 @@ impl Looked {
             let shares = if by_share { surrogate.share(point, corner.segment, row.time).0 - share } else { 0.0 };
             slope * distance + of_share * shares.abs()
         };
-        // What samples tell of the polynomials' errors: at corners they are known, and so is how they change on the way.
+        // Samples tell errors at corners, and how these change on the way.
         let told = misses.filter(|_| !passes).map(|own| own.of(corner.output, corner.error));
         let missed = |xi: &[f64]| told.as_ref().map_or(0.0, |own| own.parabolas(xi));
         let along: Option<Vec<f64>> = (0..xi.len()).map(|axis| told.as_ref()?.along(axis, xi)).collect();
@@ -238,7 +238,7 @@ mod tests {
             assert!((missed.parabolas(&xi) - of(&xi)).abs() < 1e-15);
         }
         assert!(missed.rest < 1e-15);
-        // A cube is what they lack: at most 2/√27 of it.
+        // They lack a cube, by at most 2/√27 of it.
         let own = misses(&lines, |xi| of(xi) + 0.1 * xi[0].powi(3));
         let rest = own.of(0, 2.0).rest;
         assert!(rest > 0.03 && rest <= 0.1 * 2.0 / 27_f64.sqrt(), "{rest}");

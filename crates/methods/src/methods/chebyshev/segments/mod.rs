@@ -51,7 +51,7 @@ use crate::methods::request::Keep;
 use crate::methods::result::{BandBuilder, Estimate, MethodResult};
 use crate::methods::validation::Validation;
 use crate::numerics::{Extent, Range, SAFETY_OF_SURROGATE, Sample, Surrogate, held_beside, largest};
-use at_row::{Expansion, RowMotion};
+use at_row::{PolynomialSource, RowMotion};
 use ends::Ends;
 use growth::Growth;
 use held::{AxisLines, Misses};
@@ -78,7 +78,7 @@ pub(super) fn of_degree(
     let Some(motions) = ensemble.segments(samples)? else { return Ok(None) };
     match Pieces::new(ensemble, surrogate, motions, validation)? {
         Some(pieces) => {
-            let composed = composed(ensemble, &pieces, Expansion::Grid(surrogate), validation)?;
+            let composed = composed(ensemble, &pieces, PolynomialSource::Grid(surrogate), validation)?;
             Ok(Some(composed.finished(ensemble, samples.len(), pieces, keep)))
         }
         None => Ok(None),
@@ -141,7 +141,7 @@ fn grown(
         let is_last = goal.spent + wanted > goal.budget.simulations || ensemble.is_interrupted();
         let is_likely = |(excess, before): (f64, f64)| excess * error <= TUNING.likely * before;
         if is_last || last.is_none_or(is_likely) {
-            let composed = composed(ensemble, &pieces, Expansion::Grid(&surrogate), validation)?;
+            let composed = composed(ensemble, &pieces, PolynomialSource::Grid(&surrogate), validation)?;
             let result = composed.finished(ensemble, count, pieces, keep);
             let excess = excess(&result, goal);
             best = Some(MethodResult { order: Some(growth.orders()), ..result });
@@ -199,14 +199,14 @@ pub(in crate::methods) fn of_jets(
     validation: &Validation,
 ) -> Result<Option<MethodResult>, EnsembleError> {
     let Some(mut pieces) = Pieces::of_jets(ensemble, space, validation)? else { return Ok(None) };
-    let mut found = composed(ensemble, &pieces, Expansion::Jets(space), validation)?;
+    let mut found = composed(ensemble, &pieces, PolynomialSource::Jets(space), validation)?;
     for _ in 0..TUNING.halvings_of_jets {
         if found.worst <= TUNING.enough_of_jets {
             break;
         }
         let Some(halved) = pieces.halved(ensemble, space)? else { break };
         pieces = halved;
-        found = composed(ensemble, &pieces, Expansion::Jets(space), validation)?;
+        found = composed(ensemble, &pieces, PolynomialSource::Jets(space), validation)?;
     }
     Ok(Some(found.finished(ensemble, 1, pieces, Keep::Nothing)))
 }
@@ -243,15 +243,15 @@ impl Composed {
 fn composed(
     ensemble: &dyn Ensemble,
     pieces: &Pieces,
-    expansion: Expansion,
+    source: PolynomialSource,
     validation: &Validation,
 ) -> Result<Composed, EnsembleError> {
     let domain = ensemble.domain();
     let lattice = |piece: &Piece| Lattice::new(&piece.surrogate, &piece.samples, domain.dimension());
     let lattices: Vec<Lattice> = pieces.all.iter().map(lattice).collect();
-    let analysis = match expansion {
-        Expansion::Grid(grid) => Some((grid, SensitivityAnalysis::new(domain, grid))),
-        Expansion::Jets(_) => None,
+    let analysis = match source {
+        PolynomialSource::Grid(grid) => Some((grid, SensitivityAnalysis::new(domain, grid))),
+        PolynomialSource::Jets(_) => None,
     };
     let lines = AxisLines::new(&validation.points);
     let held_out: Vec<Vec<Point>> =
@@ -275,7 +275,7 @@ fn composed(
         .all
         .par_iter()
         .zip(&lattices)
-        .map(|(piece, lattice)| RowMotion::of_rows(piece, lattice, &times, expansion))
+        .map(|(piece, lattice)| RowMotion::of_rows(piece, lattice, &times, source))
         .collect();
     let mut of_parts: Vec<_> = of_parts.into_iter().map(Vec::into_iter).collect();
     let motions: Vec<Vec<RowMotion>> =
@@ -322,7 +322,7 @@ fn composed(
     let mut found: Vec<Vec<Estimate>> =
         (0..ensemble.rows()).into_par_iter().map(known).collect::<Result<_, EnsembleError>>()?;
     if pieces.all.len() > 1 {
-        // Beside a surface samples may miss in one row what they tell in the next one.
+        // Beside a surface samples may miss an error in one row, and tell it in the next.
         for output in 0..ensemble.outputs() {
             let errors: Vec<f64> = found.iter().map(|row| row[output].error).collect();
             found.iter_mut().zip(held_beside(&errors)).for_each(|(row, error)| row[output].error = error);

@@ -140,8 +140,8 @@ tuning! {
         beyond_branch: f64 = 0.02, moves "Chebyshev bounds through events";
         /// How far it does as a share of the step there, at most: farther a polynomial through nodes says nothing.
         beyond_step: f64 = 0.2, moves "Chebyshev bounds through events";
-        /// The branch of a segment goes on beyond it by so many times the longest step there, at most, where motions are
-        /// expanded at a row's time.
+        /// Where motions are expanded at a time, the branch of a segment goes on beyond it by so many times the longest
+        /// step there, at most.
         beyond_longest: f64 = 2.0, moves "Chebyshev bounds through events";
         /// A part is between two events at a time where it is by so many times the errors of their instants.
         safety_of_common: f64 = 2.0, moves "Chebyshev bounds through events";
