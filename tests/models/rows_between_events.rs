@@ -107,3 +107,31 @@ bounds: {{ taylor: {{ order: 4 }} }}
     let off = (own.upper[row] - 2582.386755).abs();
     assert!(off < 1e-4, "{off:e} of {:e}", own.error.total[row]);
 }
+
+/// A thin post, which a tenth of the speeds meets: 3 of 133 samples do, and no surface between the two parts of the box
+/// has them on its side. The truth is of the same method.
+#[test]
+fn a_part_that_few_samples_are_in_is_not_left_out() {
+    let away = "sqrt((b.x - 10.06)^2 + (b.y - 12.83)^2)";
+    let push = format!("K0*max(0.097 - {away}, 0)/{away}");
+    let text = format!(
+        "
+parameters: {{ v0: {{ interval: [14.54, 16.86] }}, K0: {{ interval: [2478, 3522] }} }}
+bodies: {{ b: {{ mass: 1, coordinates: [x, y] }} }}
+effects:
+  weight: {{ gravity: {{ acceleration: [0, -9.81] }} }}
+  post: {{ force: {{ on: b, value: [\"{push}*(b.x - 10.06)\", \"{push}*(b.y - 12.83)\"] }} }}
+initial: {{ b.x: 0, b.y: 0, b.vx: 7.76, b.vy: v0 }}
+outputs: {{ y: b.y }}
+simulation: {{ duration: 2.436, step: 2e-3, output_step: 0.058 }}
+bounds: {{ chebyshev: {{ order: 8 }}, scan: {{ points: 12 }} }}
+"
+    );
+    let (bounds, _) = ran(study_of(&text));
+    let row = row(&bounds, 2.088);
+    for method in [Method::Chebyshev, Method::Scan] {
+        let own = band(output(&bounds, "y"), method);
+        let off = 13.95100883 - own.upper[row];
+        assert!(own.error.unresolved[row] || off <= own.error.total[row], "{method:?}: {off} beyond");
+    }
+}

@@ -370,14 +370,13 @@ fn is_corner(xi: &[f64]) -> bool {
     xi.iter().all(|xi| xi.abs() == 1.0)
 }
 
-/// An output's range over all parts, and how far either end may be off.
+/// An output's range over all parts, and how far either end may be off: by an unknown amount where one is unknown.
 fn joined(parts: &[Vec<Ends>], output: usize) -> (Extent, f64) {
-    // Nothing is known of a part that no point is found in.
-    let mut known = parts.iter().map(|ends| ends[output].clone()).filter(|ends| !ends.extent.range.lower.is_nan());
-    let Some(first) = known.next() else {
+    let (known, unknown): (Vec<_>, Vec<_>) =
+        parts.iter().map(|ends| ends[output].clone()).partition(|ends| !ends.extent.range.lower.is_nan());
+    let Some(all) = known.into_iter().reduce(Ends::or) else {
         let unknown = || Extent::unknown(parts.first().map_or(0, |ends| ends[output].extent.places[0].len()));
         return (unknown(), f64::NAN);
     };
-    let all = known.fold(first, Ends::or);
-    (all.extent, largest(all.errors))
+    (all.extent, if unknown.is_empty() { largest(all.errors) } else { f64::NAN })
 }

@@ -16,7 +16,7 @@ use super::{extremes, joined};
 use crate::methods::closure::Closure;
 use crate::methods::ensemble::{Ensemble, EnsembleError};
 use crate::methods::validation::Validation;
-use crate::numerics::{CutMotions, Range, STEP_NODES, SegmentMotions, corners, spread};
+use crate::numerics::{CutMotions, Range, STEP_NODES, SegmentMotions, corners, largest, spread};
 
 /// The motions of a word that stand for a number of each of its samples; without numbers, of a word that has none.
 pub fn number_as_motion(samples: Vec<usize>, numbers: Option<&[f64]>) -> SegmentMotions {
@@ -91,7 +91,7 @@ pub fn range_in_part(
     };
     let parts: Vec<Vec<Ends>> = pieces.iter().filter(|piece| piece.surrogate.segments() > 0).map(of_piece).collect();
     let (extent, moved) = joined(&parts, 0);
-    let error = held_out.map(|number| extent.range.distance(number)).fold(moved, f64::max);
+    let error = largest(held_out.map(|number| extent.range.distance(number)).chain([moved]));
     Ok(Some(RangeInPart { range: extent.range, error, share: share(&pieces, k) }))
 }
 

@@ -112,6 +112,10 @@ impl Fitting<'_> {
             let mut own: Vec<Vec<f64>> = on_lines.filter(fits).take(beside).collect();
             let others = of_box.iter().filter(|point| fits(point)).cloned();
             own.extend(others.take(lacks - own.len().min(lacks)));
+            if own.is_empty() && lacks > 0 && !is_layer {
+                // The surface that the samples tell leaves the part out: there are too few beside it.
+                own.extend(about(&of_word, lacks));
+            }
             wanted.extend(own);
         }
         wanted.sort_by(|a, b| a.partial_cmp(b).unwrap_or(std::cmp::Ordering::Equal));
@@ -123,6 +127,21 @@ impl Fitting<'_> {
 /// Largest distance along an axis.
 fn distance(a: &[f64], b: &[f64]) -> f64 {
     largest(a.iter().zip(b).map(|(a, b)| a - b))
+}
+
+/// So many points spread over the box about some, and as far beside it as it is wide.
+fn about(points: &[&Vec<f64>], count: usize) -> Vec<Vec<f64>> {
+    let k = points.first().map_or(0, |point| point.len());
+    let of_axis = |axis: usize| {
+        let own = points.iter().map(|point| point[axis]);
+        let (low, high) = (own.clone().fold(1.0, f64::min), own.fold(-1.0, f64::max));
+        (0.5 * (low + high), (high - low).max(TUNING.covering_apart))
+    };
+    let axes: Vec<(f64, f64)> = (0..k).map(of_axis).collect();
+    let place = |xi: Vec<f64>| -> Vec<f64> {
+        xi.iter().zip(&axes).map(|(xi, (middle, wide))| (middle + xi * wide).clamp(-1.0, 1.0)).collect()
+    };
+    spread(k, count).into_iter().map(place).collect()
 }
 
 /// So many points on lines from points inside of a surface to others beyond it; the share of all gives the margin.

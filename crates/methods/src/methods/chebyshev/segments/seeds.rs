@@ -21,7 +21,7 @@ impl Lattice {
             let xi = [&corners(k, TUNING.corners_of_lattice)[..], &spread(k, TUNING.spread_a_parameter * k), others]
                 .concat();
             let edges = (1..xi.len()).flat_map(|end| [(end - 1, end), (end / 2, end)]).collect();
-            return Self { points: surrogate.points(xi), on_ends: 0, edges }.within(surrogate);
+            return Self { points: surrogate.points(xi), on_ends: 0, edges }.within(surrogate, others);
         };
         let count = (intervals + 1).pow(k as u32);
         let stride = |axis: usize| (intervals + 1).pow(axis as u32);
@@ -33,14 +33,16 @@ impl Lattice {
             let inner = (0..k).filter(move |&axis| place(index, axis) < intervals);
             inner.map(move |axis| (index, index + stride(axis)))
         });
-        let points = surrogate.points(xi.chain(others.iter().cloned()).collect());
-        Self { points, on_ends: 0, edges: edges.collect() }.within(surrogate)
+        Self { points: surrogate.points(xi.collect()), on_ends: 0, edges: edges.collect() }.within(surrogate, others)
     }
 
     /// The lattice inside of the surfaces that end the part, where there are any: outside of them its polynomials say
-    /// nothing of where an event is. A part may be thinner than the lattice's edges are long.
-    fn within(self, surrogate: &SegmentSurrogate) -> Self {
+    /// nothing of where an event is. A part may be thinner than the lattice's edges are long. Its samples are of it,
+    /// wherever these surfaces are.
+    fn within(mut self, surrogate: &SegmentSurrogate, samples: &[Vec<f64>]) -> Self {
+        let samples = surrogate.points(samples.to_vec());
         if surrogate.ends.is_empty() {
+            self.points.extend(samples);
             return self;
         }
         let mut xi: Vec<Vec<f64>> = Vec::new();
@@ -55,7 +57,7 @@ impl Lattice {
         }
         let on_ends = xi.len();
         let mut points: Vec<Point> = surrogate.points(xi);
-        points.extend(self.points.into_iter().filter(Point::is_inside));
+        points.extend(self.points.into_iter().filter(Point::is_inside).chain(samples));
         Self { points, on_ends, edges }
     }
 
