@@ -9,7 +9,7 @@ use super::row::SegmentRow;
 use super::seeds::Lattice;
 use super::surrogate::Point;
 use super::tuning::TUNING;
-use crate::numerics::Extent;
+use crate::numerics::{Extent, SAFETY_OF_SURROGATE};
 
 /// The outputs' ranges, with the places of their ends and their errors; samples tell of their misses at corners.
 pub(super) fn ends(row: &SegmentRow, lattice: &Lattice, misses: Option<&Misses>) -> Vec<Ends> {
@@ -31,8 +31,15 @@ pub(super) fn ends(row: &SegmentRow, lattice: &Lattice, misses: Option<&Misses>)
     let errors = row.errors(&places, &row.outputs_in(&places));
     let count = 2 * row.outputs;
     let errors = |output: usize| [0, 1].map(|end| errors[output * count + 2 * output + end]);
-    let corners: Vec<[Option<Climb>; 2]> =
-        of_outputs.iter().map(|ends| ends.map(|climb| climb.and_then(|climb| corner(row, climb)))).collect();
+    // A corner far below the end is none.
+    let near_corner = |climb: &Climb, error: f64| {
+        corner(row, climb).filter(|corner| (climb.value - corner.value).abs() <= SAFETY_OF_SURROGATE * error)
+    };
+    let of_output = |(output, ends): (usize, &[Option<&Climb>; 2])| {
+        let errors = errors(output);
+        [0, 1].map(|end| ends[end].and_then(|climb| near_corner(climb, errors[end])))
+    };
+    let corners: Vec<[Option<Climb>; 2]> = of_outputs.iter().enumerate().map(of_output).collect();
     let has_corners = corners.iter().flatten().any(Option::is_some);
     let ends = || climbs.iter().filter(|climb| !is_corner(&climb.point.xi)).map(|own| (own.segment, own.point.clone()));
     let looked = has_corners.then(|| Looked::at(row, seeds.into_iter().chain(ends()).collect()));

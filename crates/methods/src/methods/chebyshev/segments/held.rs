@@ -34,7 +34,7 @@ pub(super) struct Misses<'l> {
     values: Vec<f64>,
 }
 
-/// What an output is missed by: a parabola along each axis through the misses on the lattice, and the rest.
+/// Misses of an output: a parabola along each axis through those on the lattice, and the rest.
 struct Missed<'m> {
     /// Misses on the lattice; none where parabolas do not tell those of other samples.
     on_lattice: Vec<f64>,
@@ -92,7 +92,7 @@ impl<'l> Misses<'l> {
         Self { lines, values: (0..row.outputs).flat_map(of_output).collect() }
     }
 
-    /// What an output is missed by, by no more than this error.
+    /// Those of an output, which are no larger than this error.
     fn of(&self, output: usize, error: f64) -> Missed<'_> {
         let lattice = &self.lines.lattice;
         let count = self.lines.points.len();
@@ -112,8 +112,7 @@ impl<'l> Misses<'l> {
         Missed { on_lattice, rest, misses: self, output }
     }
 
-    /// By how much what an output is missed by changes along an axis, at most; `None` where no line through a corner
-    /// tells.
+    /// Largest change of an output's misses along an axis; `None` where no line through a corner tells it.
     fn along(&self, output: usize, axis: usize, corner: &[f64]) -> Option<f64> {
         let count = self.lines.points.len();
         let values = &self.values[output * count..][..count];
@@ -142,7 +141,7 @@ impl Missed<'_> {
         self.on_lattice.iter().enumerate().map(|(index, miss)| weight(index) * miss).sum()
     }
 
-    /// By how much the rest changes along an axis, at most.
+    /// Largest change of the rest along an axis.
     fn along(&self, axis: usize, corner: &[f64]) -> Option<f64> {
         let along = self.misses.along(self.output, axis, corner);
         if self.on_lattice.is_empty() { along } else { Some(along.map_or(self.rest, |along| along.min(self.rest))) }
@@ -181,14 +180,15 @@ impl Looked {
             Some(along.map(|(along, (a, b))| along * (slope * (a - b).abs()).min(1.0)).sum::<f64>())
         };
         let own = corner.value - missed(xi);
-        let rest = told.as_ref().map_or(corner.error, |told| told.rest);
+        let rest = told.as_ref().filter(|own| !own.on_lattice.is_empty()).map(|own| own.rest);
+        let own_error = rest.unwrap_or(corner.error);
         let count = self.places.len();
         let of_place = |(index, (segment, point)): (usize, &(usize, Point))| {
             let at = corner.output * count + index;
             let is_own = *segment == corner.segment;
             Rival {
                 within: corner.sign * (own - self.values[at] + missed(&point.xi)),
-                error: self.errors[at].min(rest),
+                error: rest.map_or(self.errors[at], |rest| rest.min(self.errors[at])),
                 change: if is_own { change(point) } else { f64::INFINITY },
                 along: if is_own { of_axes(point) } else { None },
             }
@@ -204,8 +204,8 @@ impl Looked {
         let within =
             |axis: usize| corner.sign * (own - values[corner.output * at.len() + axis] + missed(&beside[axis].xi));
         let rises = |axis: &usize| {
-            let rival = Rival { within: within(*axis), error: rest, change: change(&beside[*axis]), along: None };
-            rival.beyond(rest) > 0.0
+            let rival = Rival { within: within(*axis), error: own_error, change: change(&beside[*axis]), along: None };
+            rival.beyond(own_error) > 0.0
         };
         // Where slopes are too small to tell, as far from the corner as errors may go on rising.
         let of_axis = |axis: usize| {
@@ -214,7 +214,7 @@ impl Looked {
         };
         let near: f64 = if (0..xi.len()).any(|axis| rises(&axis)) { (0..xi.len()).map(of_axis).sum() } else { 0.0 };
         let places = self.places.iter().enumerate().map(of_place);
-        places.map(|rival| rival.beyond(rest)).fold(near, f64::max)
+        places.map(|rival| rival.beyond(own_error)).fold(near, f64::max)
     }
 }
 
