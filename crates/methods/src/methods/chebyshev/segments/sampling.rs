@@ -6,7 +6,7 @@ use super::fitting::Fitting;
 use super::parts::WordPart;
 use super::piece::Piece;
 use super::tuning::TUNING;
-use crate::numerics::{corners, largest, spread};
+use crate::numerics::{Range, corners, largest, spread};
 
 impl Fitting<'_> {
     /// Points of a part that are far outside of its samples, the farthest first: a fit may have any value there.
@@ -131,11 +131,10 @@ fn distance(a: &[f64], b: &[f64]) -> f64 {
 
 /// So many points spread over the box about some, and as far beside it as it is wide.
 fn about(points: &[&Vec<f64>], count: usize) -> Vec<Vec<f64>> {
-    let k = points.first().map_or(0, |point| point.len());
+    let Some(k) = points.first().map(|point| point.len()) else { return Vec::new() };
     let of_axis = |axis: usize| {
-        let own = points.iter().map(|point| point[axis]);
-        let (low, high) = (own.clone().fold(1.0, f64::min), own.fold(-1.0, f64::max));
-        (0.5 * (low + high), (high - low).max(TUNING.covering_apart))
+        let own = Range::of(&points.iter().map(|point| point[axis]).collect::<Vec<f64>>());
+        (0.5 * (own.lower + own.upper), own.width().max(TUNING.covering_apart))
     };
     let axes: Vec<(f64, f64)> = (0..k).map(of_axis).collect();
     let place = |xi: Vec<f64>| -> Vec<f64> {
@@ -167,4 +166,21 @@ fn across(
         at(0.5 * (low + high))
     };
     (0..count).map(of).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn points_are_spread_about_samples_only() {
+        assert!(about(&[], 5).is_empty());
+        let samples = [vec![0.3, -0.9], vec![0.5, -0.8]];
+        let found = about(&samples.iter().collect::<Vec<_>>(), 40);
+        assert_eq!(found.len(), 40);
+        let wide = TUNING.covering_apart;
+        for xi in &found {
+            assert!((xi[0] - 0.4).abs() <= wide && (xi[1] + 0.85).abs() <= wide && xi[1] >= -1.0, "{xi:?}");
+        }
+    }
 }
