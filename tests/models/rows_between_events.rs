@@ -83,25 +83,34 @@ fn motions_are_expanded_a_little_beyond_their_events() {
     assert!(off < 1e-11, "{off:e} of {error:e}");
 }
 
-/// A body that flies past a post: behind it the largest height is at the end of a curved ridge, where climbs by linear
-/// programmes stop early. The truth is that of a Runge–Kutta method of order 8 that locates the contacts.
-#[test]
-fn ends_on_curved_ridges_are_found() {
-    let away = "sqrt((b.x - 2438)^2 + (b.y - Y0)^2)";
-    let push = format!("K0*max(170 - {away}, 0)/{away}");
-    let text = format!(
+/// A body that is thrown from the origin past a round post of such a centre, radius and stiffness.
+fn past_post(parameters: &str, centre: [&str; 2], of_post: [&str; 2], start: [&str; 2], request: &str) -> String {
+    let ([x, y], [radius, stiffness], [u, v]) = (centre, of_post, start);
+    let away = format!("sqrt((b.x - {x})^2 + (b.y - {y})^2)");
+    let push = format!("{stiffness}*max({radius} - {away}, 0)/{away}");
+    format!(
         "
-parameters: {{ Y0: {{ interval: [1597.7, 1620.3] }}, K0: {{ interval: [21.32, 22.68] }} }}
+parameters: {{ {parameters} }}
 bodies: {{ b: {{ mass: 1, coordinates: [x, y] }} }}
 effects:
   weight: {{ gravity: {{ acceleration: [0, -9.81] }} }}
-  post: {{ force: {{ on: b, value: [\"{push}*(b.x - 2438)\", \"{push}*(b.y - Y0)\"] }} }}
-initial: {{ b.x: 0, b.y: 0, b.vx: 132, b.vy: 183 }}
+  post: {{ force: {{ on: b, value: [\"{push}*(b.x - {x})\", \"{push}*(b.y - {y})\"] }} }}
+initial: {{ b.x: 0, b.y: 0, b.vx: {u}, b.vy: {v} }}
 outputs: {{ y: b.y }}
-simulation: {{ duration: 38.85, step: 0.05, output_step: 1.85 }}
-bounds: {{ taylor: {{ order: 4 }} }}
+{request}
 "
-    );
+    )
+}
+
+/// Behind the post the largest height is at the end of a curved ridge, where climbs by linear programmes stop early.
+/// The truth is that of a Runge–Kutta method of order 8 that locates the contacts.
+#[test]
+fn ends_on_curved_ridges_are_found() {
+    let parameters = "Y0: { interval: [1597.7, 1620.3] }, K0: { interval: [21.32, 22.68] }";
+    let request = "
+simulation: { duration: 38.85, step: 0.05, output_step: 1.85 }
+bounds: { taylor: { order: 4 } }";
+    let text = past_post(parameters, ["2438", "Y0"], ["170", "K0"], ["132", "183"], request);
     let (bounds, _) = ran(study_of(&text));
     let (row, own) = (row(&bounds, 29.6), band(output(&bounds, "y"), Method::Taylor));
     let off = (own.upper[row] - 2582.386755).abs();
@@ -112,21 +121,11 @@ bounds: {{ taylor: {{ order: 4 }} }}
 /// has them on its side. The truth is of the same method.
 #[test]
 fn a_part_that_few_samples_are_in_is_not_left_out() {
-    let away = "sqrt((b.x - 10.06)^2 + (b.y - 12.83)^2)";
-    let push = format!("K0*max(0.097 - {away}, 0)/{away}");
-    let text = format!(
-        "
-parameters: {{ v0: {{ interval: [14.54, 16.86] }}, K0: {{ interval: [2478, 3522] }} }}
-bodies: {{ b: {{ mass: 1, coordinates: [x, y] }} }}
-effects:
-  weight: {{ gravity: {{ acceleration: [0, -9.81] }} }}
-  post: {{ force: {{ on: b, value: [\"{push}*(b.x - 10.06)\", \"{push}*(b.y - 12.83)\"] }} }}
-initial: {{ b.x: 0, b.y: 0, b.vx: 7.76, b.vy: v0 }}
-outputs: {{ y: b.y }}
-simulation: {{ duration: 2.436, step: 2e-3, output_step: 0.058 }}
-bounds: {{ chebyshev: {{ order: 8 }}, scan: {{ points: 12 }} }}
-"
-    );
+    let parameters = "v0: { interval: [14.54, 16.86] }, K0: { interval: [2478, 3522] }";
+    let request = "
+simulation: { duration: 2.436, step: 2e-3, output_step: 0.058 }
+bounds: { chebyshev: { order: 8 }, scan: { points: 12 } }";
+    let text = past_post(parameters, ["10.06", "12.83"], ["0.097", "K0"], ["7.76", "v0"], request);
     let (bounds, _) = ran(study_of(&text));
     let row = row(&bounds, 2.088);
     for method in [Method::Chebyshev, Method::Scan] {

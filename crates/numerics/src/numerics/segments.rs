@@ -202,26 +202,26 @@ impl BranchWeights {
             let (step, all) = step_weights(steps, share);
             return Some(Self { step, all, others: None });
         }
-        let (step, local) = nearest_step(steps, share);
+        let (step, local) = nearest_step(steps, share, most_beyond)?;
         let (nodes, first) = (step_nodes(), usize::from(local > 0.0));
         let others = lagrange_weights(&nodes[first..first + STEP_NODES - 1], local);
         let all = lagrange_weights(&nodes, local).try_into().ok()?;
-        let is_near = (-most_beyond..=1.0 + most_beyond).contains(&local);
-        is_near.then_some(Self { step, all, others: Some((first, others)) })
+        Some(Self { step, all, others: Some((first, others)) })
     }
 }
 
 /// The step of a segment that is least beyond a share, in its own lengths, and the place of the share in it: steps are
-/// shorter beside events, so that a longer one before reaches farther.
-pub fn nearest_step(ends: &[f64], share: f64) -> (usize, f64) {
+/// shorter beside events, so that a longer one before reaches farther. `None` where it is beyond by more than so many
+/// times the step's length.
+pub fn nearest_step(ends: &[f64], share: f64, most_beyond: f64) -> Option<(usize, f64)> {
     let local = |step: usize| {
         let begin = step.checked_sub(1).map_or(0.0, |before| ends[before]);
         (share - begin) / (ends[step] - begin)
     };
     let beyond = |step: usize| (local(step) - 0.5).abs();
     let nearer = |a: usize, b: usize| if beyond(b) < beyond(a) { b } else { a };
-    let step = (0..ends.len()).reduce(nearer).unwrap_or(0);
-    (step, local(step))
+    let step = (0..ends.len()).reduce(nearer)?;
+    (beyond(step) <= 0.5 + most_beyond).then(|| (step, local(step)))
 }
 
 /// Weights of values at nodes in the polynomial through them.

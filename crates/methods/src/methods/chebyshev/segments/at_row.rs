@@ -37,10 +37,11 @@ struct Branch {
 impl RowMotion {
     /// Of all rows at these times.
     pub fn of_rows(piece: &Piece, lattice: &Lattice, times: &[f64], source: PolynomialSource) -> Vec<Self> {
+        let held_out = piece.surrogate.points(piece.motions.points.clone());
         let of_row = |&time: &f64| {
             let segments = 0..piece.surrogate.segments();
             let branches: Vec<Option<Branch>> =
-                segments.map(|segment| Branch::new(piece, segment, time, source)).collect();
+                segments.map(|segment| Branch::new(piece, &held_out, segment, time, source)).collect();
             let common = common_segment(piece, lattice, time);
             let is_common = common.is_some_and(|segment| branches[segment].is_some());
             Self { branches, is_common }
@@ -79,7 +80,8 @@ impl RowMotion {
 }
 
 impl Branch {
-    fn new(piece: &Piece, segment: usize, time: f64, source: PolynomialSource) -> Option<Self> {
+    /// `held_out` are the points of the piece's samples that are held out.
+    fn new(piece: &Piece, held_out: &[Point], segment: usize, time: f64, source: PolynomialSource) -> Option<Self> {
         let surrogate = &piece.surrogate;
         let direct = piece.motions.held_out.at(segment, time, TUNING.beyond_longest)?;
         let mut doubts = direct.doubts;
@@ -101,12 +103,11 @@ impl Branch {
             (None, PolynomialSource::Grid(grid)) => grid.coefficients(&of_samples()?, &mut SurrogateWork::default()),
             (None, PolynomialSource::Jets(space)) => jet_at(space, &piece.motions.fitted, segment, time)?,
         };
-        let points = surrogate.points(piece.motions.points.clone());
         let of_line = |(line, own): (usize, &[f64])| {
             let least = doubts[line].max(surrogate.truncation(own));
-            let values = &direct.values[line * points.len()..];
+            let values = &direct.values[line * held_out.len()..];
             let of_points: Vec<f64> =
-                points.iter().zip(values).map(|(point, value)| point.value(own) - value).collect();
+                held_out.iter().zip(values).map(|(point, value)| point.value(own) - value).collect();
             let of_told = |told: &Told| {
                 let of_fit = left_out.get(line).into_iter().flat_map(|line| told.fitted.iter().map(|&own| line[own]));
                 let others = told.held_out.iter().map(|&point| of_points[point]);
@@ -159,10 +160,7 @@ fn jet_at(space: &JetSpace, jet: &SegmentMotions, segment: usize, time: f64) -> 
     since[0] += time;
     let mut share = vec![0.0; terms];
     space.div(&since, &length, &mut share);
-    let (step, at_centre) = nearest_step(&jet.steps[segment], share[0]);
-    if !(-TUNING.beyond_longest..=1.0 + TUNING.beyond_longest).contains(&at_centre) {
-        return None;
-    }
+    let (step, at_centre) = nearest_step(&jet.steps[segment], share[0], TUNING.beyond_longest)?;
     let steps = &jet.steps[segment];
     let first = step.checked_sub(1).map_or(0.0, |before| steps[before]);
     let mut local: Vec<f64> = share.iter().map(|share| share / (steps[step] - first)).collect();

@@ -23,7 +23,7 @@ pub(super) struct AxisLines<'p> {
     points: &'p [Vec<f64>],
     /// By axis, the samples on each line along it.
     of_axes: Vec<Vec<Vec<usize>>>,
-    /// Those at −1, 0 and 1 along all axes, the first axis fastest; none where one of them is missing.
+    /// Those at −1, 0 and 1 along all axes; none where one of them is missing.
     lattice: Vec<usize>,
 }
 
@@ -38,8 +38,8 @@ pub(super) struct Misses<'l> {
 struct Missed<'m> {
     /// Misses on the lattice; none where parabolas do not tell those of other samples.
     on_lattice: Vec<f64>,
-    /// How far other samples are from the parabolas.
-    rest: f64,
+    /// How far other samples are from the parabolas, where there are any.
+    rest: Option<f64>,
     misses: &'m Misses<'m>,
     output: usize,
 }
@@ -66,12 +66,11 @@ impl<'p> AxisLines<'p> {
             }
             lines.into_iter().map(|(_, line)| line).filter(|line| line.len() > 1).collect()
         };
-        let count = 3_usize.checked_pow(k as u32).filter(|count| *count <= points.len()).unwrap_or(0);
-        let on_lattice = |index: usize| {
-            let xi: Vec<f64> = (0..k).map(|axis| (index / 3_usize.pow(axis as u32) % 3) as f64 - 1.0).collect();
-            points.iter().position(|point| *point == xi)
-        };
-        let lattice = (0..count).map(on_lattice).collect::<Option<Vec<usize>>>().unwrap_or_default();
+        let is_on_lattice = |sample: &usize| points[*sample].iter().all(|xi| [-1.0, 0.0, 1.0].contains(xi));
+        let mut lattice: Vec<usize> = (0..points.len()).filter(is_on_lattice).collect();
+        if 3_usize.checked_pow(k as u32) != Some(lattice.len()) {
+            lattice.clear();
+        }
         Self { points, of_axes: (0..k).map(along).collect(), lattice }
     }
 }
@@ -97,19 +96,18 @@ impl<'l> Misses<'l> {
         let lattice = &self.lines.lattice;
         let count = self.lines.points.len();
         let values = &self.values[output * count..][..count];
-        let whole = Missed { on_lattice: Vec::new(), rest: error, misses: self, output };
         let on_lattice: Vec<f64> = lattice.iter().map(|&sample| values[sample]).collect();
-        if on_lattice.is_empty() || !on_lattice.iter().all(|miss| miss.is_finite()) {
-            return whole;
-        }
-        let parted = Missed { on_lattice, ..whole };
+        let is_known = !on_lattice.is_empty() && on_lattice.iter().all(|miss| miss.is_finite());
+        let parted = Missed { on_lattice, rest: None, misses: self, output };
         let others: Vec<usize> =
             (0..count).filter(|sample| !lattice.contains(sample) && values[*sample].is_finite()).collect();
-        let rest = largest(others.iter().map(|&sample| values[sample] - parted.parabolas(&self.lines.points[sample])));
+        let apart = |&sample: &usize| values[sample] - parted.parabolas(&self.lines.points[sample]);
         // How much is left between the lattice's points the other samples tell.
-        let is_less = !others.is_empty() && rest < error;
-        let (on_lattice, rest) = if is_less { (parted.on_lattice, rest) } else { (Vec::new(), error) };
-        Missed { on_lattice, rest, misses: self, output }
+        let rest = (is_known && !others.is_empty()).then(|| largest(others.iter().map(apart)));
+        match rest.filter(|rest| *rest < error) {
+            Some(rest) => Missed { rest: Some(rest), ..parted },
+            None => Missed { on_lattice: Vec::new(), ..parted },
+        }
     }
 
     /// Largest change of an output's misses along an axis; `None` where no line through a corner tells it.
@@ -130,21 +128,20 @@ impl<'l> Misses<'l> {
 impl Missed<'_> {
     /// The parabolas at some ξ.
     fn parabolas(&self, xi: &[f64]) -> f64 {
-        let weight = |index: usize| -> f64 {
-            let of_axis = |(axis, &x): (usize, &f64)| match index / 3_usize.pow(axis as u32) % 3 {
-                0 => 0.5 * x * (x - 1.0),
-                1 => 1.0 - x * x,
-                _ => 0.5 * x * (x + 1.0),
+        let lines = self.misses.lines;
+        let weight = |sample: usize| -> f64 {
+            let of_axis = |(x, node): (&f64, &f64)| {
+                if *node == 0.0 { 1.0 - x * x } else { 0.5 * x * (x + node) }
             };
-            xi.iter().enumerate().map(of_axis).product()
+            xi.iter().zip(&lines.points[sample]).map(of_axis).product()
         };
-        self.on_lattice.iter().enumerate().map(|(index, miss)| weight(index) * miss).sum()
+        self.on_lattice.iter().zip(&lines.lattice).map(|(miss, &sample)| weight(sample) * miss).sum()
     }
 
     /// Largest change of the rest along an axis.
     fn along(&self, axis: usize, corner: &[f64]) -> Option<f64> {
         let along = self.misses.along(self.output, axis, corner);
-        if self.on_lattice.is_empty() { along } else { Some(along.map_or(self.rest, |along| along.min(self.rest))) }
+        [along, self.rest].into_iter().flatten().reduce(f64::min)
     }
 }
 
@@ -180,7 +177,7 @@ impl Looked {
             Some(along.map(|(along, (a, b))| along * (slope * (a - b).abs()).min(1.0)).sum::<f64>())
         };
         let own = corner.value - missed(xi);
-        let rest = told.as_ref().filter(|own| !own.on_lattice.is_empty()).map(|own| own.rest);
+        let rest = told.as_ref().and_then(|own| own.rest);
         let own_error = rest.unwrap_or(corner.error);
         let count = self.places.len();
         let of_place = |(index, (segment, point)): (usize, &(usize, Point))| {
@@ -237,10 +234,10 @@ mod tests {
         for xi in spread(2, 20) {
             assert!((missed.parabolas(&xi) - of(&xi)).abs() < 1e-15);
         }
-        assert!(missed.rest < 1e-15);
+        assert!(missed.rest.unwrap() < 1e-15);
         // They lack a cube, by at most 2/√27 of it.
         let own = misses(&lines, |xi| of(xi) + 0.1 * xi[0].powi(3));
-        let rest = own.of(0, 2.0).rest;
+        let rest = own.of(0, 2.0).rest.unwrap();
         assert!(rest > 0.03 && rest <= 0.1 * 2.0 / 27_f64.sqrt(), "{rest}");
     }
 

@@ -123,7 +123,6 @@ pub(super) fn corner(row: &SegmentRow, climb: &Climb) -> Option<Climb> {
         let end = usize::from(height(1) > height(0));
         (own.value, own.point) = (values[own.output * 2 + end], points[end].clone());
     }
-    let in_segment = own.point.segment(row.time) == own.segment || climb.point.xi == own.point.xi;
-    let inside = climb.point.xi == own.point.xi || own.point.is_inside();
-    (in_segment && inside).then_some(own)
+    let is_own = own.point.xi == climb.point.xi;
+    (is_own || own.point.segment(row.time) == own.segment && own.point.is_inside()).then_some(own)
 }
