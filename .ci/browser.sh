@@ -45,6 +45,7 @@ if [ "${1:-}" = pictures ]; then
 fi
 "$MBINT" run tests/browser/hostile.yaml --quiet --output "$REPORTS/hostile"
 "$MBINT" run tests/browser/shapes.yaml --quiet --output "$REPORTS/shapes"
+"$MBINT" run tests/browser/bouncing_ball.yaml --quiet --output "$REPORTS/bouncing_ball"
 # Every shipped model and every example of the book, with few simulations.
 cp -r models docs/examples "$REPORTS/"
 for model in "$REPORTS"/{models,examples}/*.yaml; do

@@ -1,4 +1,4 @@
-// Reports in a browser. REPORTS names a folder with results of four_bar, six_axis_arm, door, shapes.yaml and hostile.yaml, and `all` of every other
+// Reports in a browser. REPORTS names a folder with results of four_bar, six_axis_arm, door, shapes.yaml, hostile.yaml and bouncing_ball.yaml, and `all` of every other
 // model and example.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
@@ -208,6 +208,38 @@ test('samples and polynomials stay within the bounds, and agree with each other'
   });
   // Corners of the box are among them: they reach most of the way to the bounds.
   assert.ok(Math.max(...samples) - Math.min(...samples) > 0.8 * (upper - lower));
+  await context.close();
+});
+
+/** Height of a ball on a spring without loss: parabolas, and in contact y = −(u/ω) sin ωτ − (g/ω²)(1 − cos ωτ). */
+const height = (stiffness, from, time) => {
+  const [g, omega, speed] = [9.81, Math.sqrt(stiffness), Math.sqrt(2 * 9.81 * from)];
+  const fall = speed / g;
+  if (time < fall) return from - 0.5 * g * time * time;
+  const contact = (Math.PI + 2 * Math.atan(g / (speed * omega))) / omega;
+  const within = (time - fall) % (contact + 2 * fall);
+  if (within < contact) return -(speed / omega) * Math.sin(omega * within) - (g / omega ** 2) * (1 - Math.cos(omega * within));
+  return speed * (within - contact) - 0.5 * g * (within - contact) ** 2;
+};
+
+test('the ghost of a slider bounces at its own times', async () => {
+  const { page, context } = await open(browser, report('bouncing_ball'));
+  const times = Array.from({ length: 400 }, (_, row) => 0.005 * row);
+  const places = [[1, 1], [-1, -1], [0.37, -0.61]];
+  const at = (exaggeration) => page.evaluate(([times, places, exaggeration]) => {
+    const { movie } = mbint.current();
+    movie.exaggeration = exaggeration;
+    const of = ([stiffness, from]) => movie.parameters.map(({ name }) => (name === 'K' ? stiffness : from));
+    return places.map((place) => times.map((time) => movie.anywhere(time, of(place)).pose[1]));
+  }, [times, places, exaggeration]);
+  const [once, tenfold] = [await at(1), await at(10)];
+  places.forEach(([stiffness, from], place) => times.forEach((time, row) => {
+    const [own, nominal] = [height(1e5 + 5e3 * stiffness, 1 + 0.02 * from, time), height(1e5, 1, time)];
+    // At fixed times polynomials are off by 6 mm.
+    assert.ok(Math.abs(once[place][row] - own) < 1e-3, `${time} s: ${once[place][row]} instead of ${own}`);
+    const shown = nominal + 10 * (own - nominal);
+    assert.ok(Math.abs(tenfold[place][row] - shown) < 1.2e-2, `${time} s: ${tenfold[place][row]} instead of ${shown}`);
+  }));
   await context.close();
 });
 

@@ -22,7 +22,7 @@ pub fn integrator<'s>(
     schedule: &'s Schedule,
 ) -> Result<Box<dyn Integrator<'s> + 's>, SimulationError> {
     if let Some(segments) = schedule.segments() {
-        return Ok(Box::new(SegmentRun::start(simulator, samples, segments, schedule.end())?.rows()));
+        return Ok(SegmentRun::start(simulator, samples, segments, schedule.end())?.rows());
     }
     let first_step = schedule.first_step();
     Ok(match schedule.integration {

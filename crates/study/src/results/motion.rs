@@ -83,7 +83,12 @@ pub struct WorstMotion {
 pub struct MotionPolynomials {
     /// (term, parameter)
     pub degrees: Vec<u8>,
-    /// (time, coordinate of the pose, term)
+    /// Times of the nominal motion's events, as far as all samples meet the same ones, s.
+    pub events: Vec<f64>,
+    /// Deviations of these times, s: (event, term)
+    pub event_deviations: Vec<f64>,
+    /// (time, coordinate of the pose, term). Where there are events, time is that of the nominal motion: between two
+    /// events, and from the last one to the end, the time of another motion is a linear function of it.
     pub bodies: Vec<f64>,
     /// (number of the points, term)
     pub points: Vec<f64>,

@@ -12,7 +12,7 @@ use super::tile::{Lanes, SegmentTile};
 use super::tuning::TUNING;
 use crate::compile::SwitchProgram;
 use crate::numerics::{BoundaryMargins, CutMotions, Sample, SegmentMotions};
-use crate::simulate::drive::TiledRun;
+use crate::simulate::drive::{Integrator, TiledRun};
 use crate::simulate::ensemble::RowClosure;
 use crate::simulate::error::SimulationError;
 use crate::simulate::simulator::Simulator;
@@ -27,6 +27,8 @@ pub struct SegmentRun<'s> {
     samples: Vec<Sample>,
     /// By sample.
     words: Vec<Option<usize>>,
+    /// By sample, s.
+    event_times: Vec<Vec<f64>>,
     duration: f64,
 }
 
@@ -41,8 +43,15 @@ impl<'s> SegmentRun<'s> {
         segments: &'s Segments,
         duration: f64,
     ) -> Result<Self, SimulationError> {
-        let mut run =
-            Self { simulator, segments, tiles: Vec::new(), samples: samples.to_vec(), words: Vec::new(), duration };
+        let mut run = Self {
+            simulator,
+            segments,
+            tiles: Vec::new(),
+            samples: samples.to_vec(),
+            words: Vec::new(),
+            event_times: Vec::new(),
+            duration,
+        };
         let Some(program) = simulator.switches() else { return Ok(run) };
         let spell = |sample: &Sample| Ok(Spelled::by(run.path(program, sample)?, segments));
         let spelled: Vec<Spelled> = samples.par_iter().map(spell).collect::<Result<_, SimulationError>>()?;
@@ -66,12 +75,26 @@ impl<'s> SegmentRun<'s> {
         };
         run.tiles = lanes.into_par_iter().map(of_lanes).collect::<Result<_, SimulationError>>()?;
         run.words = spelled.iter().map(|spelled| spelled.word).collect();
+        run.event_times = spelled.iter().map(Spelled::ends).collect();
         Ok(run)
     }
 
+    /// Times of the events that all samples meet in the same order from the start on, s: sample, event.
+    pub fn common_event_times(&self) -> Vec<Vec<f64>> {
+        let words: Option<Vec<usize>> = self.words.iter().copied().collect();
+        let events = |word: usize| &self.segments.words[word].events;
+        let common = |words: Vec<usize>| {
+            let first = words.first().map_or(&[][..], |&word| events(word));
+            let with = |&word: &usize| first.iter().zip(events(word)).take_while(|(own, other)| own == other).count();
+            words.iter().map(with).min()
+        };
+        let count = words.and_then(common).unwrap_or(0);
+        self.event_times.iter().map(|times| times[..count.min(times.len())].to_vec()).collect()
+    }
+
     /// The same, row by row.
-    pub(in crate::simulate) fn rows(self) -> TiledRun<'s, SegmentRows<'s>> {
-        TiledRun::of(self.simulator, self.tiles)
+    pub fn rows(self) -> Box<dyn Integrator<'s> + 's> {
+        Box::new(TiledRun::of(self.simulator, self.tiles))
     }
 
     fn path(&self, program: &'s SwitchProgram, sample: &Sample) -> Result<Path<'s>, SimulationError> {

@@ -11,7 +11,7 @@
  * @typedef {{scales: number[], data: string}} Packed
  * @typedef {{values: number[], bodies: Packed, points: string}} PackedSample
  * @typedef {{name: string, reaction: boolean, values: Packed}} PackedForce
- * @typedef {{degrees: number[], bodies: Packed, points: string, error: number}} PackedPolynomials
+ * @typedef {{degrees: number[], bodies: Packed, points: string, error: number, events?: {times: string, deviations: string}}} PackedPolynomials
  * @typedef {{name: string, time?: number, bodies: Packed, points: string}} PackedWorst
  * @typedef {{drawing: Drawing, visuals: Visual[], times: string, rows: number, between: number, per_body: number, parameters: Parameter[], nominal: {bodies: string, points: string}, forces: PackedForce[], samples: PackedSample[], worst?: PackedWorst[], stopped: number, polynomials?: PackedPolynomials}} PackedMotion
  * @typedef {{name: string, unit: string, half_width: number, values: string}} PackedSlope

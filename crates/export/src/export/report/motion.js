@@ -31,7 +31,8 @@ export class Movie {
     /** How many times differences from the nominal motion are shown. */
     this.exaggeration = 1;
     const found = data.polynomials;
-    this.polynomials = found && { degrees: found.degrees, error: found.error, bodies: unpack(found.bodies), points: floats(found.points) };
+    const { times, deviations } = (found && found.events) || { times: '', deviations: '' };
+    this.polynomials = found && { degrees: found.degrees, error: found.error, bodies: unpack(found.bodies), points: floats(found.points), events: floats(times), eventDeviations: floats(deviations) };
   }
 
   get duration() {
@@ -53,9 +54,13 @@ export class Movie {
 
   /** @param {number} time @param {(place: number) => number} difference from the nominal motion */
   interpolated(time, difference) {
+    return this.onLines(time, (place) => this.bodies[place] + this.exaggeration * difference(place));
+  }
+
+  /** A pose on straight lines between those at the times. @param {number} time @param {(place: number) => number} at */
+  onLines(time, at) {
     const [frame, share] = this.frame(time);
     const next = Math.min(frame + 1, this.times.length - 1);
-    const at = (/** @type {number} */ place) => this.bodies[place] + this.exaggeration * difference(place);
     const pose = new Float64Array(this.lines);
     for (let line = 0; line < this.lines; line++) {
       const value = at(frame * this.lines + line);
@@ -111,8 +116,24 @@ export class Movie {
       for (let term = 0; term < terms.length; term++) value += terms[term] * all[place * terms.length + term];
       return value;
     };
-    const point = sum(this.polynomials.points);
-    return { pose: this.interpolated(time, sum(this.polynomials.bodies)), points: this.points.map((value, place) => value + this.exaggeration * point(place)) };
+    const [point, body, event] = [this.polynomials.points, this.polynomials.bodies, this.polynomials.eventDeviations].map(sum);
+    const events = Array.from(this.polynomials.events, (nominal, place) => nominal + event(place));
+    const nominal = this.onLines(time, (place) => this.bodies[place]);
+    const own = this.onLines(this.nominalTime(time, events), (place) => this.bodies[place] + body(place));
+    const pose = own.map((value, line) => nominal[line] + this.exaggeration * (value - nominal[line]));
+    return { pose, points: this.points.map((value, place) => value + this.exaggeration * point(place)) };
+  }
+
+  /** The nominal motion's time that belongs to a time of a motion with these events: linear from event to event. @param {number} time @param {number[]} events */
+  nominalTime(time, events) {
+    const nominal = this.polynomials ? this.polynomials.events : [];
+    if (events.length === 0) return time;
+    let next = 0;
+    while (next < events.length && events[next] <= time) next += 1;
+    const end = (/** @type {ArrayLike<number>} */ times, /** @type {number} */ place) => (place < 0 ? 0 : place < times.length ? times[place] : this.duration);
+    const [begin, length] = [end(events, next - 1), end(events, next) - end(events, next - 1)];
+    const share = length > 0 ? Math.min(1, (time - begin) / length) : 0;
+    return end(nominal, next - 1) + share * (end(nominal, next) - end(nominal, next - 1));
   }
 
   /** Where a body is, the ground being 0. @param {Float64Array} pose @param {number} body @returns {{p: number[], q: number[]}} */

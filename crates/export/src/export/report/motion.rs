@@ -103,6 +103,16 @@ struct PackedPolynomials<'m> {
     bodies: Packed,
     points: String,
     error: f64,
+    /// Absent without events.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    events: Option<PackedEvents>,
+}
+
+/// Times of the nominal motion's events, and coefficients of their deviations: (event, term).
+#[derive(Serialize)]
+struct PackedEvents {
+    times: String,
+    deviations: String,
 }
 
 /// The file; with the results, their derivatives are in it too.
@@ -166,7 +176,10 @@ fn force(force: &MovingForce) -> PackedForce<'_> {
 }
 
 fn polynomials<'m>(found: &'m MotionPolynomials, nominal: &Poses, lines: usize) -> PackedPolynomials<'m> {
-    let MotionPolynomials { degrees, bodies, points, error } = found;
+    let MotionPolynomials { degrees, events, event_deviations, bodies, points, error } = found;
     let terms = bodies.len() / nominal.bodies.len().max(1);
-    PackedPolynomials { degrees, bodies: Packed::new(bodies, lines * terms), points: floats(points), error: *error }
+    let events =
+        (!events.is_empty()).then(|| PackedEvents { times: floats(events), deviations: floats(event_deviations) });
+    let bodies = Packed::new(bodies, lines * terms);
+    PackedPolynomials { degrees, bodies, points: floats(points), error: *error, events }
 }

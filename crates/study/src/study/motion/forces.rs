@@ -46,7 +46,8 @@ impl SimulatedForces {
         asking.between_events = others.between_events;
         let mut rows: Vec<DrawingValues> = Vec::new();
         let nominal = [asking.domain.nominal.clone()];
-        let (times, _) = asking.of_samples(description, &nominal, numbers, |_, _, values| rows.push(values)).ok()?;
+        let found = asking.of_samples(description, &nominal, numbers, |_, _, values| rows.push(values)).ok()?;
+        let times = found.times;
         (!times.is_empty()).then_some(Self { asked, times, rows })
     }
 

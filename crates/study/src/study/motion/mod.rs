@@ -6,6 +6,7 @@
 mod by_hand;
 mod forces;
 mod movable;
+mod polynomials;
 mod reach;
 mod rows;
 mod samples;
@@ -18,14 +19,13 @@ use super::drawing::{drawn, extent, has_ground};
 use super::{RunError, caught, pool};
 use crate::assemble::FormulationInfo;
 use crate::model::Description;
-use crate::numerics::{Sample, SparseWork, SurrogateWork};
-use crate::results::{
-    Drawing, FunctionWitness, Motion, MotionPolynomials, MovingSample, ParameterSummary, Poses, Summary,
-};
+use crate::numerics::Sample;
+use crate::results::{Drawing, FunctionWitness, Motion, MovingSample, ParameterSummary, Poses, Summary};
 use crate::simulate::{Integration, Interruption};
 pub use by_hand::{Grip, Hand, Held};
 use forces::SimulatedForces;
 pub use movable::Movable;
+use polynomials::Recordings;
 use rows::MotionRows;
 use samples::Samples;
 use thinning::Thinning;
@@ -110,6 +110,8 @@ struct Recorded {
     rows: Vec<f64>,
     points: Vec<f64>,
     stopped: Option<usize>,
+    /// Times of the events that all samples meet, s.
+    events: Vec<f64>,
 }
 
 impl<'a> Posed<'a> {
@@ -191,32 +193,16 @@ impl<'a> Posed<'a> {
             .iter()
             .map(|&sample| MovingSample { values: wanted[sample].to_vec(), poses: poses(&recorded[sample]) })
             .collect();
-        let polynomials = surrogate.map(|surrogate| {
-            let nodes: Vec<Poses> = nodes.iter().map(poses).collect();
-            let fit = |line: fn(&Poses) -> &Vec<f64>| {
-                let of_nominal = line(&nominal);
-                let mut values = Vec::with_capacity(of_nominal.len() * nodes.len());
-                for (index, nominal) in of_nominal.iter().enumerate() {
-                    values.extend(nodes.iter().map(|node| line(node)[index] - nominal));
-                }
-                surrogate.coefficients(&values, &mut SurrogateWork::default())
-            };
-            let degrees = (0..terms).flat_map(|term| surrogate.basis().degrees(term)).copied().collect();
-            let (bodies, points) = (fit(|poses| &poses.bodies), fit(|poses| &poses.points));
-            let points_of_box: Vec<Vec<f64>> =
-                samples.iter().map(|sample| self.rows.domain.xi(&sample.values)).collect();
-            let mut found = vec![0.0; nominal.bodies.len() * samples.len()];
-            surrogate.basis().values(&points_of_box, &bodies, &mut found, &mut SparseWork::default());
-            let lines = found.chunks_exact(samples.len().max(1)).enumerate();
-            let error = lines.flat_map(|(index, found)| {
-                let weight = weights[index % weights.len()];
-                let simulated = samples.iter().map(move |sample| sample.poses.bodies[index]);
-                let base = nominal.bodies[index];
-                found.iter().zip(simulated).map(move |(found, value)| weight * (found + base - value).abs())
-            });
-            let error = error.fold(0.0, f64::max);
-            MotionPolynomials { degrees, error, bodies, points }
-        });
+        let recordings = Recordings {
+            times: &times,
+            shown_rows: &kept,
+            lines,
+            nominal: &recorded[0],
+            nodes,
+            others: shown.iter().map(|&sample| (self.rows.domain.xi(&wanted[sample]), &recorded[sample])).collect(),
+            weights: &weights,
+        };
+        let polynomials = surrogate.map(|surrogate| recordings.polynomials(surrogate));
         let found_times: Vec<f64> = kept.iter().map(|&row| times[row]).collect();
         Ok(Motion {
             times: found_times.clone(),
@@ -267,15 +253,15 @@ impl<'a> Posed<'a> {
         wanted: &[Sample],
     ) -> Result<(Vec<f64>, Vec<Recorded>), RunError> {
         let mut recorded = vec![Recorded::default(); wanted.len()];
-        let (times, stopped) =
-            self.rows.of_samples(description, wanted, self.lines(), |sample, is_first, values| {
-                self.pose(&values, &mut recorded[sample].rows);
-                if is_first {
-                    recorded[sample].points = self.points(&values, drawing);
-                }
-            })?;
-        recorded.iter_mut().zip(stopped).for_each(|(recorded, stopped)| recorded.stopped = stopped);
-        Ok((times, recorded))
+        let found = self.rows.of_samples(description, wanted, self.lines(), |sample, is_first, values| {
+            self.pose(&values, &mut recorded[sample].rows);
+            if is_first {
+                recorded[sample].points = self.points(&values, drawing);
+            }
+        })?;
+        recorded.iter_mut().zip(found.stopped).for_each(|(recorded, stopped)| recorded.stopped = stopped);
+        recorded.iter_mut().zip(found.events).for_each(|(recorded, events)| recorded.events = events);
+        Ok((found.times, recorded))
     }
 
     fn pose(&self, values: &DrawingValues, into: &mut Vec<f64>) {

@@ -1,5 +1,6 @@
 //! Motions under the worst functions of excitations: each a model of its own, with the functions in place of limits.
 
+use super::polynomials::pose_at;
 use super::tuning::TUNING;
 use super::{MotionOptions, Posed, Recorded};
 use crate::model::{Description, Witness, deviation_of};
@@ -59,16 +60,6 @@ fn worst(
     if times.last().is_none_or(|end| *end < last.min(motion.times.last().copied().unwrap_or(0.0))) {
         return Ok(None);
     }
-    let bodies = motion.times.iter().flat_map(|&time| at(&times, &rows, lines, time.min(last))).collect();
+    let bodies = motion.times.iter().flat_map(|&time| pose_at(&times, &rows, lines, time.min(last))).collect();
     Ok(Some(WorstMotion { name: own.name.clone(), time: own.time, poses: Poses { bodies, points } }))
-}
-
-/// A pose at a time, on the straight line between the rows around it.
-fn at(times: &[f64], rows: &[f64], lines: usize, time: f64) -> Vec<f64> {
-    let after = times.partition_point(|own| *own < time).clamp(1, (times.len() - 1).max(1));
-    let row = |row: usize| &rows[row.min(times.len() - 1) * lines..][..lines];
-    let (before, after) = (after - 1, after.min(times.len() - 1));
-    let share =
-        if after > before { ((time - times[before]) / (times[after] - times[before])).clamp(0.0, 1.0) } else { 0.0 };
-    row(before).iter().zip(row(after)).map(|(from, to)| from + share * (to - from)).collect()
 }
