@@ -21,7 +21,7 @@ fn evaluate(bencher: Bencher, width: usize, tape: fn(&Simulator) -> &Tape) {
     bencher.counter(ItemsCount::new(tape.len() * width)).bench_local(|| tile.run(tape));
 }
 
-/// What is known when a step begins.
+/// Quantities of a step that its iteration does not change.
 #[bench(args = WIDTHS)]
 fn step(bencher: Bencher, width: usize) {
     evaluate(bencher, width, |simulator| simulator.program.step());

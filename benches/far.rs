@@ -24,7 +24,7 @@ fn slider_crank(name: &str, points: &str, effects: &str) -> Description {
     load_str(name, &text, &[]).unwrap_or_else(|wrong| panic!("{}", wrong.render(false)))
 }
 
-/// Points of the crank and the rod over floors, so many, a metre and more below them.
+/// Contacts of points of the crank and the rod with `count` floors, a metre and more below them.
 fn floors(count: usize, friction: &str) -> Description {
     let floor = |i: usize| format!("F{i}: [0, -{}]", 1.0 + 0.1 * i as f64);
     let contact = |i: usize| {
@@ -39,7 +39,7 @@ fn floors(count: usize, friction: &str) -> Description {
     slider_crank(&format!("{count} floors"), &points.join(", "), &effects)
 }
 
-/// So many rollers beside the mechanism, which the rod's middle does not reach.
+/// `count` rollers next to the mechanism, which the rod's middle does not reach.
 fn rollers(count: usize) -> Description {
     let points: Vec<String> = (0..count).map(|i| format!("R{i}: [{}, 1]", 0.1 * i as f64)).collect();
     let contact = |i: usize| {
@@ -50,7 +50,7 @@ fn rollers(count: usize) -> Description {
     slider_crank(&format!("{count} rollers"), &points.join(", "), &(0..count).map(contact).collect::<String>())
 }
 
-/// So many stops of the crank's joint, none of which it reaches.
+/// `count` stops of the crank's joint, none of which it reaches.
 fn stops(count: usize) -> Description {
     let stop = |i: usize| {
         let end = 100 + i;

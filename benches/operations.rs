@@ -34,7 +34,7 @@ fn main() {
     println!("| --- | --- |{}", " --: |".repeat(KINDS.len()));
     for file in files {
         let name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        // What is asked without a motion has no steps.
+        // An analysis without a motion has no steps.
         let Some(simulator) = load(&file, &[]).ok().and_then(|model| prepare(&model).ok()) else { continue };
         let (program, start) = (&simulator.program, &simulator.start);
         let tapes: [(&str, &Tape); 10] = [

@@ -9,7 +9,7 @@ use mbint::inner::model::{Description, Stepping, read};
 use mbint::inner::simulate::Stepper;
 use mbint::inner::study::prepare;
 
-/// The fastest of so many repetitions counts.
+/// Repetitions, of which the fastest counts.
 const REPETITIONS: usize = 25;
 
 /// Steps of a repetition, as far as the model's run has them.

@@ -1,5 +1,5 @@
-//! What is not asked for costs nothing: a model with ten more bodies and a scene that leaves effects out against the
-//! bare one, and islands apart against the same in one.
+//! Parts that no output needs cost nothing: a model with ten more bodies and a scene that leaves effects out against
+//! the bare one, and islands apart against the same in one.
 //!
 //! The median of the pairs' ratios is printed, with the quartiles.
 
@@ -37,7 +37,7 @@ fn compare(pairs: usize, name: &str, first: &Model, other_name: &str, other: &Mo
     println!("{name}: {first:.1} ms, {other_name}: {other:.1} ms, ratio {ratio:.3} ({low:.3} to {high:.3})");
 }
 
-/// The slider crank of Wu, Luo & Zhang, with so many bodies beside it.
+/// The slider crank of Wu, Luo & Zhang, with `more` bodies next to it.
 fn slider_crank(more: usize) -> Model {
     let text = include_str!("../models/slider_crank.yaml");
     let (mut bodies, mut joints, mut effects) = (String::new(), String::new(), String::new());

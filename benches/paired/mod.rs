@@ -3,7 +3,7 @@
 
 use std::time::Instant;
 
-/// What was measured: medians, and of the ratio the quartiles too.
+/// Measured medians, and quartiles of the ratio.
 pub struct Paired {
     /// s
     pub seconds: [f64; 2],
@@ -11,7 +11,7 @@ pub struct Paired {
     pub ratio: [f64; 3],
 }
 
-/// Runs two things so many times.
+/// Runs each of two closures `pairs` times.
 pub fn paired(pairs: usize, runs: [&dyn Fn(); 2]) -> Paired {
     let mut times = [Vec::new(), Vec::new()];
     for pair in 0..pairs {

@@ -318,7 +318,7 @@ impl<'g> Balance<'g> {
     }
 }
 
-/// Whether a link has so many others in its tree, on average, that M is left out.
+/// Whether M is left out because the average link has many others in its tree.
 fn are_long(links: &[ChildLink]) -> bool {
     let mut roots: Vec<usize> = Vec::with_capacity(links.len());
     let mut sizes = vec![0_usize; links.len()];

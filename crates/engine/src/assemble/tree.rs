@@ -167,7 +167,7 @@ impl Tree {
         joints
     }
 
-    /// Why joint coordinates are not worth a try: bodies are more than so many joints from their roots on average.
+    /// Why joint coordinates are not worth a try: bodies are more than `deepest` joints from their roots on average.
     pub fn too_deep(&self, deepest: usize) -> Option<String> {
         if self.is_absolute() {
             return None;

@@ -39,7 +39,7 @@ fn may_be_singular(program: &Program) -> bool {
 }
 
 impl<'c> Method<'c> {
-    /// Under the steps of a run, with so many parameters.
+    /// For the steps of a run, with `parameters` parameters.
     ///
     /// # Errors
     /// Where equations of rows have no factors.

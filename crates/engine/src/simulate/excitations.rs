@@ -4,7 +4,7 @@
 //! Of the nominal motion, f = φᵀM(ẅ + ω²(q − q₀)) is what acts on a mode φ: for as long as it is smooth, the mode
 //! follows it. Where f jumps within a step by more than the steps before would let expect, the mode starts to vibrate
 //! with the amplitude of the jump over ω². Steps that are short for the mode (of a function of the time that is
-//! followed closely) make it vibrate themselves; what it has where they end is its excitation.
+//! followed closely) make it vibrate themselves; its amplitude at their end is its excitation.
 
 use std::collections::VecDeque;
 

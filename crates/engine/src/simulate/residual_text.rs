@@ -15,7 +15,7 @@ pub fn residual_text(residual: f64, constraint: &ConstraintInfo, of_velocities: 
     format!("{value}{unit}{}", if of_velocities { "/s" } else { "" })
 }
 
-/// A positive number in so many significant digits, without trailing zeros.
+/// A positive number with `digits` significant digits, without trailing zeros.
 fn significant(value: f64, digits: i32) -> String {
     let before_point = symdiff::math::log10(value).floor() as i32 + 1;
     let decimals = (digits - before_point).max(0) as usize;

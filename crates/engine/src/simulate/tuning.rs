@@ -14,7 +14,8 @@ tuning! {
         derived_listed: usize = 8, moves "which results a message lists";
         /// Steps that the force on a mode is extrapolated from, to find jumps of it.
         jump_points: usize = 4, moves "reports of vibrations that begin after the start";
-        /// A jump differs from the extrapolated force by so many times the largest difference of the steps before.
+        /// Least difference of a jump from the extrapolated force, as a multiple of the largest difference of the steps
+        /// before.
         jump_factor: f64 = 10.0, moves "reports of vibrations that begin after the start";
         /// Steps before a suspected jump with whose differences it is compared.
         jump_steps: usize = 6, moves "reports of vibrations that begin after the start";

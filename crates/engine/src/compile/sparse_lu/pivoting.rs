@@ -123,7 +123,7 @@ impl<'m> PivotSearch<'m> {
         Some((row, column))
     }
 
-    /// The search that widens to no more than so many columns and rows before it lowers the threshold.
+    /// The search that widens to at most `widest` columns and rows before it lowers the threshold.
     fn search(&self, active: &Active, widest: usize) -> Option<(usize, usize)> {
         let singular = self.pivoting.smallest();
         let is_diagonal = matches!(self.pivoting, Pivoting::Diagonal { .. });

@@ -72,7 +72,7 @@ impl TileKernel {
         super::add(&mut self.adjoints, 1.0, &other.adjoints);
     }
 
-    /// Those of a lane of so many, by cell and input.
+    /// Adjoints of one lane of `width`, by cell and input.
     pub fn of_lane(&self, lane: usize, width: usize) -> Vec<f64> {
         self.adjoints.iter().skip(lane).step_by(width).copied().collect()
     }

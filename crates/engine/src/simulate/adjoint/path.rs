@@ -1,5 +1,5 @@
-//! The states between the steps of a tile, which are needed backwards: all of them where there is room, else those
-//! after every so many steps, from which the others are computed once more.
+//! The states between the steps of a tile, which are needed backwards: all of them where there is room, else those at a
+//! fixed interval of steps, from which the others are computed once more.
 
 use super::tuning::TUNING;
 

@@ -136,7 +136,7 @@ impl<'s> StartAdjoints<'s> {
         self.take(unknowns);
     }
 
-    /// Moves the motion in the tile onto the constraints by so many corrections, and remembers the way.
+    /// Moves the motion in the tile onto the constraints by `times` corrections, and records the way.
     pub fn close(&mut self, times: usize) -> Closing {
         let (program, layout) = (self.program, self.layout());
         let positions = self.correct(program.position(), &layout.q, times);

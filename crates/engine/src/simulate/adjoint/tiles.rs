@@ -231,7 +231,7 @@ impl TileOf<'_> {
         self.lanes.iter().enumerate().flat_map(of_lane).collect()
     }
 
-    /// By the scheme on so many levels.
+    /// By the scheme on `levels` levels.
     fn of_scheme(
         &mut self,
         levels: usize,

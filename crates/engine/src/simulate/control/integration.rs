@@ -20,7 +20,7 @@ pub enum Integration {
     Explicit,
     /// By the same method in segments that end at events.
     Segments,
-    /// By the scheme in segments that end at events, on so many levels.
+    /// By the scheme on several levels, in segments that end at events.
     SchemeSegments {
         /// 1 to 4; 1 is the scheme itself.
         levels: usize,
@@ -28,7 +28,7 @@ pub enum Integration {
 }
 
 impl Integration {
-    /// Of so many levels; one is the scheme itself.
+    /// With `levels` levels; one is the scheme itself.
     pub fn of_levels(levels: usize) -> Self {
         if levels > 1 { Self::Extrapolated { levels } } else { Self::Plain }
     }

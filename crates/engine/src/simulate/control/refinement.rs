@@ -4,7 +4,7 @@ use super::schedule::{LastSteps, Schedule, StepList};
 use super::tuning::TUNING;
 use crate::simulate::events::segments::divided;
 
-/// So many steps as end neither where one of `count` does nor half of it.
+/// A number of steps none of which ends where one of `count` steps, or half of one, ends.
 fn odd_to(count: usize) -> usize {
     let least = (TUNING.finer_steps * count as f64).round() as usize;
     (least..).find(|&others| are_coprime(others, 2 * count)).unwrap_or(least)
@@ -14,8 +14,7 @@ fn are_coprime(a: usize, b: usize) -> bool {
     if b == 0 { a == 1 } else { are_coprime(b, a % b) }
 }
 
-/// The same for steps of which some ends are kept; `others` says how many there are between two of these instead of so
-/// many.
+/// As `divided`, for steps of which some ends are kept; `others(n)` steps replace the n steps between two of these.
 fn divided_between(ends: &[f64], kept: &[usize], others: impl Fn(usize) -> usize) -> StepList {
     let mut divisions = Vec::new();
     let mut still = Vec::with_capacity(kept.len());

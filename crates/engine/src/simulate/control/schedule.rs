@@ -36,7 +36,7 @@ pub(super) enum StepList {
     Segmented(Segments),
 }
 
-/// Steps before the last row: whole ones, then so many of the length `rest`, s.
+/// Steps before the last row: `whole` full steps, then `rests` steps of the length `rest`, s.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct LastSteps {
     pub whole: usize,

@@ -14,7 +14,7 @@ tuning! {
         beyond_switch: f64 = 1e-6, moves "the steps of runs with chosen steps";
         /// A lane chatters if velocities switch its equations so often.
         chattering_switches: usize = 1000, moves "which lanes chatter, and where they end";
-        /// A lane chatters if velocities switch its equations at least in one of so many steps, since it began to.
+        /// A lane chatters if velocities switch its equations in at least one of this many steps since it began to.
         chattering_share: usize = 8, moves "which lanes chatter, and where they end";
         /// Most steps that a chattering lane may take up to the end of the run.
         most_chattering: usize = 20_000, moves "which lanes chatter, and where they end";

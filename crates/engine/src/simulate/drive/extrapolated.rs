@@ -75,7 +75,7 @@ pub struct Extrapolated<'s, T, R> {
 }
 
 impl<'s, T: RowTile<'s>, R: RowState> Extrapolated<'s, T, R> {
-    /// Of so many levels, given the run of each by its share of the schedule's steps.
+    /// With `levels` levels; `of_level` gives the run of each by its share of the schedule's steps.
     ///
     /// # Errors
     /// Those of the runs.
@@ -199,7 +199,7 @@ struct Motions<'m> {
 }
 
 impl<R: RowState> ClosedRows<R> {
-    /// So many observed values of each row: row, line, lane.
+    /// Observed values, `lines` of each row: row, line, lane.
     fn record(&mut self, motions: Motions<'_>, schedule: &Schedule, observed: Observed, lines: usize) -> Vec<f64> {
         let width = self.closure.width();
         let of_row = motions.values.len() / motions.rows.max(1);

@@ -48,7 +48,7 @@ pub struct Stop {
     pub singular: bool,
 }
 
-/// The first lanes, so many, that stop in a row since their state (q and v, 2n lines, lane by lane) is not finite.
+/// Stops of the first `count` lanes whose state (q and v, 2n lines, lane by lane) is not finite in a row.
 pub(in crate::simulate) fn lost_lanes(
     alive: &mut [bool],
     count: usize,

@@ -38,7 +38,7 @@ pub trait RowTile<'s>: Debug + Send {
     /// Also searches for singular configurations that the first lane passes, and for constraints that open.
     fn watch(&mut self, _simulator: &'s Simulator) {}
 
-    /// Also reduces so many outputs to one number each.
+    /// Also reduces the outputs to one number for each channel.
     fn reduce(&mut self, _channels: &'s [Channel], _outputs: usize) {}
 
     /// After the last row: what outputs are reduced to, channel by channel, lane by lane; NaN of lanes that stopped.

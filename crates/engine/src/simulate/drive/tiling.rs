@@ -8,7 +8,7 @@ use symdiff::WIDTHS;
 pub(in crate::simulate) fn tiles(samples: usize, registers: usize, threads: usize) -> Vec<(usize, usize, usize)> {
     let fits = TUNING.tile_memory / (registers * size_of::<f64>()).max(1);
     let widths = TUNING.narrowest_tile..=fits.clamp(TUNING.narrowest_tile, TUNING.widest_tile);
-    // The last thread ends after so many tiles; of widths that take as long the widest takes least of all threads.
+    // Time until the last thread ends; of widths with equal times, the widest takes least of all threads.
     let until_last = |width: &usize| samples.div_ceil(*width).div_ceil(threads) * (TUNING.dispatch + width);
     let width = WIDTHS.into_iter().rev().filter(|width| widths.contains(width)).min_by_key(until_last).unwrap_or(1);
     let mut tiles = Vec::new();
@@ -22,8 +22,8 @@ pub(in crate::simulate) fn tiles(samples: usize, registers: usize, threads: usiz
     tiles
 }
 
-/// Puts lines of a tile (line, lane) among those of all samples (line, sample), so many. The first lanes are those
-/// `samples`, others are left out.
+/// Puts lines of a tile (line, lane) among those of `all` samples (line, sample). The first lanes are `samples`, others
+/// are left out.
 pub(super) fn put_lanes(values: &[f64], width: usize, samples: &[usize], into: &mut [f64], all: usize) {
     for (of_tile, line) in values.chunks_exact(width).zip(into.chunks_exact_mut(all.max(1))) {
         samples.iter().zip(of_tile).for_each(|(&sample, &value)| line[sample] = value);

@@ -1,4 +1,4 @@
-//! What is watched in each step of a tile, beside the steps themselves. None of it changes a state.
+//! Watches of each step of a tile. None of them changes a state.
 
 use super::switch_extents::SwitchExtents;
 use crate::simulate::diagnostics::{OverlapWatch, PartingWatch, SingularWatch};

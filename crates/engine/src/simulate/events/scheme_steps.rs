@@ -50,7 +50,7 @@ struct Level<S> {
 }
 
 impl<'s> SchemeSteps<Stepper<'s>> {
-    /// Of an assembled tile, on so many levels.
+    /// Of an assembled tile, on `levels` levels.
     pub fn of_lanes(simulator: &'s Simulator, start: &Tile, levels: usize) -> Self {
         let mut stepper = Stepper::new(&simulator.program, start);
         stepper.refine(true);
@@ -59,7 +59,7 @@ impl<'s> SchemeSteps<Stepper<'s>> {
 }
 
 impl<'s> SchemeSteps<JetStepper<'s>> {
-    /// Of a jet about an assembled centre, on so many levels.
+    /// Of a jet about an assembled centre, on `levels` levels.
     pub fn of_jet(
         simulator: &'s Simulator,
         space: &'s JetSpace,

@@ -7,8 +7,7 @@ tuning! {
     "simulate: events" {
         /// A sample at a share of the largest margin weighs as one on the surface over this share and it.
         near_surface: f64 = 0.02, moves "bounds of motions with events";
-        /// Motions are followed so many times as long as they are asked for, so that an event beside the end is met by
-        /// all.
+        /// Factor on the duration to which motions are followed, so that all of them meet an event near the end.
         followed_share: f64 = 1.25, moves "bounds of motions with events";
         /// Most events of a motion.
         most_events: usize = 128, moves "bounds of motions with events";
@@ -87,7 +86,7 @@ tuning! {
         /// Motions are cut if their words can be followed for at least this share of the duration: a polynomial that
         /// is not cut there ends at the first event.
         worthwhile_share: f64 = 0.25, moves "which motions are cut at events";
-        /// Motions are also cut if their words can be followed through at least so many events.
+        /// Motions are also cut if their words can be followed through at least this many events.
         worthwhile_events: usize = 8, moves "which motions are cut at events";
     }
 }

@@ -162,7 +162,7 @@ fn grouped(count: usize, are_alike: impl Fn(usize, usize) -> bool) -> Vec<Vec<us
     groups
 }
 
-/// Whether motions are worth cutting that can be followed to a time and through so many events.
+/// Whether motions that can be followed to the time `reach` and through `events` events are worth cutting.
 fn is_worthwhile(reach: f64, events: usize, duration: f64) -> bool {
     reach >= TUNING.worthwhile_share * duration || events >= TUNING.worthwhile_events
 }
@@ -220,7 +220,7 @@ fn shared(all: &[&Followed], end: f64, is_one: bool) -> Option<Word> {
     of_extent(all, count, tail, end)
 }
 
-/// The word of some motions that are followed through so many events, and to the end of a last segment without one.
+/// The word of some motions that are followed through `count` events, and to the end of a last segment without one.
 fn of_extent(all: &[&Followed], count: usize, tail: Option<f64>, end: f64) -> Option<Word> {
     let word = |followed: &Followed| followed.events.iter().map(|(event, _)| *event).take(count).collect();
     let events: Vec<Event> = word(all.first()?);

@@ -29,7 +29,7 @@ impl Movement {
         Self { farthest: vec![0.0; 2 * coordinates.len()], least, kinds }
     }
 
-    /// With a state of so many lanes, which started elsewhere.
+    /// Extended to a state of `lanes` lanes, which began at `start`.
     #[must_use]
     pub fn reaching(mut self, start: &[f64], state: &[f64], lanes: usize) -> Self {
         let n = self.farthest.len() / 2;

@@ -27,7 +27,7 @@ pub enum ExplicitObstacle {
     /// It takes more steps than it may.
     #[error("it takes more than {steps} steps")]
     TooManySteps {
-        /// So many.
+        /// Most steps.
         steps: usize,
     },
     /// A force changes in space within a step.
@@ -44,7 +44,7 @@ pub enum ExplicitObstacle {
     },
 }
 
-/// The schedule at which every controlling sample keeps each step's error below `tolerance`, of at most so many steps.
+/// The schedule of at most `most` steps at which every controlling sample keeps each step's error below `tolerance`.
 /// Rows stand where they are; steps pass over them.
 ///
 /// # Errors

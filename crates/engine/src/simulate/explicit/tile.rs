@@ -53,7 +53,7 @@ pub(in crate::simulate) struct ExplicitTile<'s, M> {
     parting: Option<PartingWatch<'s>>,
 }
 
-/// Samples in tiles for so many threads, assembled.
+/// Samples in tiles for `threads` threads, assembled.
 ///
 /// # Errors
 /// The first sample that cannot be assembled.

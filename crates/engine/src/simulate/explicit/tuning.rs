@@ -30,7 +30,7 @@ tuning! {
         at_the_end: f64 = 1e-6, moves "the steps of explicit runs";
         /// Where h times the largest eigenvalue is more than this, stability limits the step.
         largest_stable: f64 = 6.1, moves "which runs count as stiff";
-        /// So many steps whose length stability limits, with no more than a few others between, are stiff.
+        /// Steps limited by stability, with at most a few others between, at which a run is stiff.
         stiff_steps: usize = 15, moves "which runs count as stiff";
         /// Most other steps between those that stability limits.
         others_between: usize = 6, moves "which runs count as stiff";

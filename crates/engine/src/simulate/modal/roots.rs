@@ -1,8 +1,8 @@
 //! Modes of mechanisms with states: vibrations and lags, how they are followed over the box, and their results.
 //!
 //! A pair σ ± iω is a vibration of frequency |λ| and damping ratio −σ/|λ|, a real eigenvalue a lag of time constant
-//! −1/λ; the growth is Re λ. What is a vibration with the nominal parameters stays one where it becomes two real
-//! eigenvalues, √(λ₁λ₂) and −(λ₁ + λ₂)/(2√(λ₁λ₂)), and two lags that become a pair have its real part both.
+//! −1/λ; the growth is Re λ. A vibration of the nominal parameters stays one where it becomes two real eigenvalues,
+//! √(λ₁λ₂) and −(λ₁ + λ₂)/(2√(λ₁λ₂)), and two lags that become a pair both have its real part.
 
 use std::f64::consts::TAU;
 

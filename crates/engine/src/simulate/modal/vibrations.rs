@@ -75,7 +75,7 @@ impl Modes {
 }
 
 impl Vibrations {
-    /// Of a mechanism with so many degrees of freedom and this nominal start (the layout's registers).
+    /// Of a mechanism with `freedom` degrees of freedom and this nominal start (the layout's registers).
     pub fn new(system: &System, redundant: &[ConstraintId], freedom: usize, nominal: &[f64]) -> Self {
         let ModesRequest { number, responses } = &system.modes;
         // Those that follow from modes come last.

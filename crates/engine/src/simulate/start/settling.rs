@@ -13,7 +13,7 @@ pub(super) struct Settling {
 }
 
 impl Settling {
-    /// Of so many lanes.
+    /// Of `width` lanes.
     pub fn new(width: usize) -> Self {
         Self { pending: vec![true; width], size: vec![0.0; width], last: vec![f64::NAN; width] }
     }

@@ -16,7 +16,7 @@ pub(in crate::simulate) struct ResolvingSteps {
 }
 
 impl ResolvingSteps {
-    /// Of a run of at most so many steps.
+    /// Of a run of at most `most` steps.
     ///
     /// # Errors
     /// Where functions of the time take many more steps than that.
@@ -50,7 +50,7 @@ impl ResolvingSteps {
         }
     }
 
-    /// A part h of a step, halved until it resolves all functions, or so many times.
+    /// A part h of a step, halved until it resolves all functions, at most `halvings` times.
     fn resolved_step(&mut self, from: f64, step: f64, mut h: f64, halvings: u32) -> f64 {
         for _ in 0..halvings {
             let share = if h < step { TUNING.resolved } else { TUNING.too_fast };

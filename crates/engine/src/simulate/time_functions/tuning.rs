@@ -43,7 +43,7 @@ tuning! {
         /// A count of steps may be this many times too large: steps are halved, and functions are looked at over
         /// halved ones.
         uncertain_count: f64 = 8.0, moves "the steps of runs with functions of time";
-        /// A step may be so many times the one before.
+        /// Largest factor from one step to the next.
         growth_of_steps: f64 = 2.0, moves "the steps of runs with functions of time";
     }
 }

@@ -89,7 +89,7 @@ pub(in crate::simulate) struct Accumulator<'s> {
 }
 
 impl<'s> Accumulator<'s> {
-    /// For a tile of so many lanes, with so many outputs.
+    /// For a tile of `width` lanes, with `outputs` outputs.
     pub fn new(channels: &'s [Channel], outputs: usize, width: usize) -> Self {
         let states = vec![State::new(); channels.len() * width];
         let stopped = vec![false; width];

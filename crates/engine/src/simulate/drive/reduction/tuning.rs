@@ -9,8 +9,8 @@ tuning! {
         places_of_path: usize = 4, moves "reduced outputs of paths";
         /// Bisections of a crossing: to the last bit of a share.
         bisections_of_crossing: usize = 52, moves "reduced outputs";
-        /// A peak may rise above the piece's ends by so many times what the parabolas through three of the four values
-        /// say.
+        /// Largest rise of a peak above the piece's ends, as a multiple of that of parabolas through three of the four
+        /// values.
         rise_of_peak: f64 = 1.5, moves "reduced outputs";
         /// Points before they are reduced to their convex hull, at least.
         fewest_hull_points: usize = 64, moves "time of zones";

@@ -39,7 +39,7 @@ pub struct MotionSpaces {
 }
 
 impl MotionSpaces {
-    /// For so many parameters.
+    /// For `parameters` parameters.
     pub fn new(parameters: usize, order: usize) -> Self {
         Self { fine: Space::new(parameters, order), coarse: Space::new(parameters, order.div_ceil(2)) }
     }
