@@ -286,7 +286,7 @@ pub trait Ensemble: Sync {
     }
 
     /// Taylor coefficients, about some ξ and in scaled parameters, of the motion that is cut at its events. They are
-    /// the values of so many samples, with the index of the word; `None` where motions are not cut.
+    /// returned in place of samples' values, after the index of the word; `None` where motions are not cut.
     ///
     /// # Errors
     /// Where the sample cannot be assembled.

@@ -4,7 +4,7 @@ use super::closure::Closure;
 use super::tuning::TUNING;
 use crate::numerics::{ParameterBox, Phase, SparseBasis, SparseWork};
 
-/// How motions are moved, to see what that does to outputs.
+/// Moves of motions, which show their effects on outputs.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Moves {
     /// Lines, each by how much.
@@ -14,7 +14,7 @@ pub(super) struct Moves {
 }
 
 impl Moves {
-    /// All of these together, each so many times.
+    /// The sum of moves, each times its weight.
     pub fn sum<'m>(moves: impl Iterator<Item = (&'m Self, f64)>) -> Self {
         let mut sum = Self::default();
         for (moves, weight) in moves.filter(|(_, weight)| *weight != 0.0) {

@@ -119,7 +119,7 @@ impl KeptSurrogate {
         self.errors.get(output).map_or(0.0, |errors| errors[row])
     }
 
-    /// What does not depend on any parameter: rows of outputs.
+    /// A surrogate of outputs that depend on no parameter, row by row: time and outputs.
     pub fn constant(rows: impl Iterator<Item = (f64, Vec<f64>)>) -> Self {
         let row = |(time, values): (f64, Vec<f64>)| {
             let lines: Vec<&[f64]> = values.iter().map(std::slice::from_ref).collect();

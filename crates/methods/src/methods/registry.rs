@@ -112,7 +112,7 @@ pub trait Registered: BoundingMethod + Sized {
     /// For people.
     const ABOUT: About;
 
-    /// What is run where the command line names the method and the model does not.
+    /// The request that is run where the command line names the method and the model does not.
     fn default_for(problem: &Problem) -> Self;
 }
 
@@ -126,7 +126,7 @@ pub trait BoundingMethod: Debug {
         Ok(())
     }
 
-    /// Keeps what is asked for these of the parameters.
+    /// Keeps only the settings of these parameters.
     fn narrow(&mut self, _kept: &[usize]) {}
 
     /// Adjusts the request to a part of the box.

@@ -89,7 +89,7 @@ pub struct BandBuilder {
 }
 
 impl BandBuilder {
-    /// For so many outputs and rows, all unknown.
+    /// For `outputs` outputs and `rows` rows, all unknown.
     pub fn new(outputs: usize, rows: usize) -> Self {
         Self {
             bands: vec![vec![Range::UNKNOWN; rows]; outputs],

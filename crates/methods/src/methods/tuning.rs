@@ -35,8 +35,8 @@ tuning! {
         most_taylor_order: usize = 50, moves "which models are refused";
         /// Degree where a model asks for none, the paper's.
         taylor_order: usize = 2, moves "Taylor bounds of models that ask for no order";
-        /// An output whose span halved steps make smaller than this share of it is conserved: a scheme of second order
-        /// takes away three quarters of what is its error alone.
+        /// An output whose span halved steps make smaller than this share of it is conserved: with a scheme of second
+        /// order they remove three quarters of a span that is error alone.
         conserved: f64 = 0.3, moves "errors of bounds";
         /// Corners, at most, that slopes name as further samples.
         corners_of_slopes: usize = 8, moves "errors of bounds";

@@ -87,8 +87,8 @@ impl ValidationTable {
         &self.motion(row)[line * self.samples..][..self.samples]
     }
 
-    /// What of a coordinate's error, by the first of the samples with halved steps, is a shift in time in this row;
-    /// none where that cannot be told.
+    /// The part of a coordinate's error, by the first of the samples with halved steps, that is a shift in time in this
+    /// row; `None` where it is unknown.
     pub fn time_shift(&self, halved: &Self, row: usize, coordinate: usize) -> Option<TimeShift> {
         let velocity = self.motions / 2 + coordinate;
         let window = TimeShift::window(row, self.rows().min(halved.rows()));
@@ -126,8 +126,8 @@ impl ValidationTable {
         if upper - lower <= least { 0.0 } else { (upper - lower).max(0.0) }
     }
 
-    /// Spans of all outputs, given some samples with shorter steps; zero where an output is conserved: these take away
-    /// most of what it changes by.
+    /// Spans of all outputs, given some samples with shorter steps; zero where an output is conserved: these remove
+    /// most of its change.
     fn spans(&self, halved: &Self, odd: &OddSteps, ensemble: &dyn Ensemble) -> Vec<f64> {
         let first: Vec<usize> = (0..odd.table.samples).collect();
         let all: Vec<usize> = (0..self.samples).collect();
@@ -291,7 +291,7 @@ impl Validation {
         Ok(Self { points, spread, direct, halved, odd, simulations, effort, simulated, spans })
     }
 
-    /// Where nothing is uncertain: the nominal motion, of which so many rows are known, is the only sample, and is
+    /// Where nothing is uncertain: the nominal motion, of which `reached` rows are known, is the only sample, and is
     /// simulated with each step halved.
     ///
     /// # Errors

@@ -2,7 +2,7 @@
 
 use super::sub_box::SubBox;
 
-/// What is estimated besides ranges and the surrogate's errors.
+/// Estimates besides ranges and the surrogate's errors.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Detail {
     /// Nothing.
@@ -14,7 +14,7 @@ pub(super) enum Detail {
 }
 
 impl Detail {
-    /// What is estimated in the end: sensitivities only where the box was not split.
+    /// Estimates at the end: sensitivities only where the box was not split.
     pub fn of(boxes: &[SubBox]) -> Self {
         if boxes.len() == 1 { Self::Sensitivities } else { Self::StepErrors }
     }

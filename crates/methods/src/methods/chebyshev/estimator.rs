@@ -1,4 +1,4 @@
-//! What is estimated of the outputs in a row: range, errors and sensitivity.
+//! Estimates of the outputs in a row: range, errors and sensitivity.
 
 use super::composition::Row;
 use super::range_search::{Previous, RangeSearch};

@@ -22,7 +22,7 @@ pub(super) struct Functions<'f> {
     pub degrees: &'f [u8],
     /// Whether they are polynomials of these degrees; else they are composed of such.
     pub are_polynomials: bool,
-    /// What of each output is too small to be looked for, by number of the output.
+    /// Rounding of each output, below which no difference is searched for, by number of the output.
     pub rounding: &'f [f64],
     /// Where some of them are known to be large or small, by [`block`].
     pub places: &'f [Vec<Vec<f64>>],

@@ -59,7 +59,7 @@ struct OverLines<'a> {
     along: Vec<Vec<f64>>,
 }
 
-/// What is the same in all rows.
+/// Data of a sensitivity analysis that are the same in all rows.
 pub(super) struct SensitivityAnalysis<'a> {
     /// ξ of the nominal parameters.
     nominal: Vec<f64>,

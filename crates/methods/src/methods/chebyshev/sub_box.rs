@@ -24,9 +24,9 @@ pub(super) type Surpluses = FxHashMap<Vec<u8>, f64>;
 pub(super) struct SubBox<'r> {
     pub domain: ParameterBox,
     pub grid: SparseGrid,
-    /// Values at the grid's nodes: so many of them, then row by row, line by line, node by node. Lines are those of the
-    /// motion, the outputs, and for each coordinate that turns the time at which its course is there (NaN where that
-    /// was not told).
+    /// Values at the grid's nodes, in groups: the number of nodes, then values row by row, line by line, node by node.
+    /// Lines are those of the motion, the outputs, and for each coordinate that turns the time at which its course is
+    /// there (NaN where that is unknown).
     pub nodes: Vec<(usize, Vec<f64>)>,
     /// Number of these lines.
     pub lines: usize,
@@ -44,7 +44,7 @@ pub(super) struct SubBox<'r> {
     pub challenged: bool,
     /// Largest error at those over the one that is allowed.
     pub error: f64,
-    /// Estimates of all rows, by row and output, and what is kept of them, once nothing is to be added.
+    /// Estimates of all rows, by row and output, and the rows that are kept, once nothing is to be added.
     pub estimates: Option<(Vec<Estimate>, Vec<KeptRow>)>,
 }
 
@@ -211,7 +211,7 @@ fn by_expectation(surplus: &Surpluses, indices: Vec<Vec<u8>>, in_pairs: bool) ->
     Some(expect(2)).filter(|in_pairs| matters(in_pairs)).unwrap_or(expected)
 }
 
-/// The expected surplus of an index, from the largest of so many degrees `back` along each axis.
+/// The expected surplus of an index, from the largest of the `back` degrees before it along each axis.
 fn extrapolated(surplus: &Surpluses, levels: &[u8], back: u8) -> f64 {
     let k = levels.len();
     let weight = |axis: usize| {

@@ -66,8 +66,8 @@ tuning! {
         telling_degree: u8 = 16, moves "bounds within a tolerance";
         /// Degrees over which surpluses are compared to tell how high a degree would have to be.
         compared_degrees: u8 = 8, moves "bounds within a tolerance";
-        /// A box is split where the expected surplus of a higher degree than is allowed is so many times the largest
-        /// allowed one.
+        /// A box is split where the expected surplus of a higher degree than is allowed exceeds this multiple of the
+        /// largest allowed one.
         split: f64 = 4.0, moves "bounds within a tolerance";
         /// Points spread over a box that are validation samples of a new surrogate, at least.
         least_spread: usize = 4, moves "bounds within a tolerance";

@@ -15,7 +15,7 @@ use crate::methods::result::Estimate;
 use crate::numerics::{SAFETY_OF_SURROGATE, Surrogate, largest};
 
 impl Adaptation<'_> {
-    /// Values a row and sample of what is observed.
+    /// Number of observed values per row and sample.
     pub(super) fn lines(&self) -> usize {
         lines(self.ensemble, Observed::Motion)
     }
@@ -109,7 +109,7 @@ impl Adaptation<'_> {
         )
     }
 
-    /// Estimates over a sub-box in some rows, by row and output, and what is kept of them.
+    /// Estimates over a sub-box in some rows, by row and output, and the rows that are kept.
     fn estimates(
         &mut self,
         sub_box: &SubBox,

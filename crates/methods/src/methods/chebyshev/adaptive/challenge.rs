@@ -48,7 +48,7 @@ impl Adaptation<'_> {
         let rows = self.looked_at(sub_box);
         let surrogate = Surrogate::sparse(&sub_box.grid);
         let (search, goal) = (&self.search, &self.goal);
-        // Of each output how often its range is what is allowed, and where its ends are.
+        // For each output, the width of its range over the allowed error, and the places of its ends.
         let look = |index: usize, row: &Row, previous: &mut Previous| {
             let found = row.range(search, previous).extents.into_iter().zip(&goal.outputs);
             let counting = found.filter(|(_, goal)| rows[index] < goal.rows);
@@ -111,8 +111,8 @@ impl Scale {
         along.map(|((a, b), weight)| weight * (a - b).abs()).fold(0.0, f64::max)
     }
 
-    /// At most so many of the places, such that each is near to one of them or of those that are known, as far as so
-    /// many are enough: always the one that is farthest from all before.
+    /// At most `most` of the places, so that each place is near one of them or of the known ones, if `most` are enough:
+    /// always the one that is farthest from all before.
     fn cover<'p>(
         &self,
         places: &[Vec<f64>],

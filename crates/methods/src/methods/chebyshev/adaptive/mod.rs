@@ -83,7 +83,7 @@ pub(super) struct Adaptation<'r> {
     simulated: Simulated,
     /// Whether the budget had no room for something.
     exhausted: bool,
-    /// Surrogates are looked at in every so many rows.
+    /// Interval of the rows in which surrogates are examined.
     every: usize,
     search: RangeSearch,
     /// The ensemble, where it is one over lines through a box.
@@ -225,7 +225,7 @@ impl<'r> Adaptation<'r> {
             || seconds.is_some_and(|seconds| self.begun.elapsed().as_secs_f64() >= seconds)
     }
 
-    /// A sub-box of which only the middle is known, and validation samples, so many of them spread over it.
+    /// A sub-box of which only the middle is known, and validation samples, `spread` of them spread over it.
     fn sub_box(
         &mut self,
         domain: ParameterBox,
@@ -280,8 +280,8 @@ impl<'r> Adaptation<'r> {
     }
 
     /// A round: adds the indices with the largest expected surplus, and, so that as many nodes are simulated together
-    /// as go well together, those that would come next. So many simulations of the budget are kept free for validation
-    /// samples.
+    /// as go well together, those that would come next. Up to `reserve` simulations of the budget are kept free for
+    /// validation samples.
     fn refine(&mut self, sub_box: &mut SubBox, reserve: usize) -> Result<(), EnsembleError> {
         let left = self.goal.budget.simulations.saturating_sub(self.goal.spent);
         let room = left.saturating_sub(reserve.min(self.goal.budget.simulations / TUNING.kept_free));

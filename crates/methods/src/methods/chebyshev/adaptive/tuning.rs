@@ -22,7 +22,7 @@ tuning! {
         together: usize = 8, moves "bounds within a tolerance";
         /// Nodes that are there for each that is simulated next, if they are many.
         growth: usize = 8, moves "bounds within a tolerance";
-        /// One in so many simulations of the budget is reserved for new validation samples, at most.
+        /// At most one in this many simulations of the budget is reserved for new validation samples.
         kept_free: usize = 2, moves "bounds within a tolerance";
         /// A surrogate that a value contradicts which was simulated elsewhere is refined until its nodes have grown by
         /// this share.

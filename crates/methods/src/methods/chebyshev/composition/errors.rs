@@ -88,8 +88,8 @@ impl Row<'_> {
     /// they are and with halved ones, move the ends.
     ///
     /// A coordinate that is too early or too late is so by about the same time over many turns. An end of a band that
-    /// is full of turns is at rest, and such a shift moves it by next to nothing. What of the errors is none may move
-    /// an end wherever it is.
+    /// is full of turns is at rest, and such a shift moves it by next to nothing. The part of the errors that is no
+    /// such shift may move an end wherever it is.
     pub fn step_errors(
         &self,
         range_search: &RangeSearch,
@@ -114,12 +114,12 @@ impl Row<'_> {
             let in_time = self.moved(range_search, extents, &in_time);
             moved.iter_mut().zip(in_time).for_each(|(moved, in_time)| *moved += in_time);
         }
-        // Of what does not follow from coordinates, their errors say nothing.
+        // The coordinates' errors say nothing about outputs that do not follow from them.
         moved.into_iter().zip(expanded).map(|(moved, &expanded)| if expanded { f64::NAN } else { moved }).collect()
     }
 
     /// How far errors of the independent coordinates and of their velocities (pairwise) move the ends of the outputs'
-    /// ranges. What positions and velocities do adds up, too, since their errors may have either sign.
+    /// ranges. The effects of positions and velocities add up, too, since their errors may have either sign.
     fn moved_by(&self, range_search: &RangeSearch, found: &[Extent], errors: &[(usize, f64)]) -> Vec<f64> {
         let lines = |first: usize| errors.iter().skip(first).step_by(2);
         let moves = |first: usize| -> Vec<Moves> {
@@ -135,7 +135,7 @@ impl Row<'_> {
 
     /// How far moves of the independent coordinates, one for each, move the ends of the outputs' ranges.
     ///
-    /// Each coordinate is moved one way and the other, and what they do adds up, whichever way each of them moves an
+    /// Each coordinate is moved one way and the other, and their effects add up, whichever way each of them moves an
     /// output. Many are moved together: all one way, or every other one against the rest. Where that moves an end by
     /// little, the extreme stays where it is, to first order; else it is searched for again.
     fn moved(&self, range_search: &RangeSearch, found: &[Extent], moves: &[Moves]) -> Vec<f64> {

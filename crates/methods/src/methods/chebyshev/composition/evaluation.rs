@@ -182,7 +182,7 @@ impl Row<'_> {
         motion
     }
 
-    /// What is kept of it after the run, given which outputs are the polynomials through their own samples.
+    /// Parts of it that are kept after the run; `own` says which outputs are the polynomials through their own samples.
     pub fn kept(&self, own: Vec<bool>) -> KeptRow {
         KeptRow {
             time: self.time,

@@ -245,7 +245,7 @@ impl<'r> Row<'r> {
         (0..count).step_by(count.div_ceil(TUNING.compared)).collect()
     }
 
-    /// Whether an output that follows from the coordinates is not what was simulated; NaN is not.
+    /// Whether an output that follows from the coordinates differs from the simulated one; NaN counts as different.
     fn disagrees(&self, output: usize, compared: &[usize], values: &[f64]) -> bool {
         let simulated = self.own_samples(output);
         let range = Range::of(simulated);

@@ -5,7 +5,7 @@ use symdiff::constants::tuning;
 tuning! {
     /// Outputs that follow from coordinates.
     "methods: chebyshev: composition" {
-        /// So many independent coordinates are moved one by one.
+        /// Most independent coordinates that are moved one by one.
         most_moved: usize = 4, moves "errors of Chebyshev bounds";
         /// What moves an end by less than this share of the range's width moves the place of the extreme by so little
         /// that it does not matter.

@@ -44,7 +44,7 @@ impl Growth {
         (0..self.grid.dimension()).map(|axis| level(axis).unwrap_or(0)).collect()
     }
 
-    /// Grows to so many terms, as far as there are any: `false` where nothing is added.
+    /// Grows to `wanted` terms, as far as there are any: `false` where nothing is added.
     ///
     /// # Errors
     /// Where a sample cannot be assembled.

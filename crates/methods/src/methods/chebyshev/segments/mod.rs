@@ -224,7 +224,7 @@ struct Composed {
 }
 
 impl Composed {
-    /// The result of so many simulations; the polynomials are kept for statistics.
+    /// The result of `simulations` simulations and those of the pieces; the polynomials are kept for statistics.
     fn finished(self, ensemble: &dyn Ensemble, simulations: usize, pieces: Pieces, keep: Keep) -> MethodResult {
         let simulations = simulations + pieces.added;
         let keeps = keep == Keep::Statistics;

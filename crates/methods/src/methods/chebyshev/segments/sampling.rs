@@ -129,7 +129,7 @@ fn distance(a: &[f64], b: &[f64]) -> f64 {
     largest(a.iter().zip(b).map(|(a, b)| a - b))
 }
 
-/// So many points spread over the box about some, and as far beside it as it is wide.
+/// `count` points spread over a box about some points that is twice as wide as theirs.
 fn about(points: &[&Vec<f64>], count: usize) -> Vec<Vec<f64>> {
     let Some(k) = points.first().map(|point| point.len()) else { return Vec::new() };
     let of_axis = |axis: usize| {
@@ -143,7 +143,8 @@ fn about(points: &[&Vec<f64>], count: usize) -> Vec<Vec<f64>> {
     spread(k, count).into_iter().map(place).collect()
 }
 
-/// So many points on lines from points inside of a surface to others beyond it; the share of all gives the margin.
+/// `count` points on lines from points inside of a surface to others beyond it; `wanted` gives the margin of each from
+/// its share of the number.
 fn across(
     inside: &[&Vec<f64>],
     others: &[&Vec<f64>],

@@ -112,8 +112,8 @@ impl SegmentSurrogate {
         Self { reach, ..self }
     }
 
-    /// How far some ξ is outside of the samples that tell errors: by the square of so many times these may a fit, or a
-    /// jet, be off there; of a fit at most 1 among them.
+    /// How far some ξ is outside of the samples that give errors: the square of the factor on these by which a fit, or
+    /// a jet, may be off there; at most 1 for a fit among them.
     pub fn leverage(&self, xi: &[f64]) -> f64 {
         if let Basis::Taylor { monomials, centre } = &self.basis {
             let ratios = xi.iter().zip(centre).zip(&self.reach).map(|((xi, centre), reach)| (xi - centre) / reach);

@@ -63,8 +63,8 @@ tuning! {
         degrees: [usize; 6] = [2, 3, 4, 6, 8, 12], moves "Chebyshev bounds through events";
         /// Parameters from which on terms are added one by one: a full grid of fewer takes less time.
         many_parameters: usize = 3, moves "Chebyshev bounds through events";
-        /// Of many parameters, rows are bounded again where polynomials err by no more than so many times as would
-        /// meet a goal.
+        /// Rows of many parameters are bounded again if the polynomials' error is at most this multiple of one that
+        /// meets a goal.
         likely: f64 = 2.0, moves "Chebyshev bounds through events";
         /// A layer reaches to this share of the depth of the part that it is cut off from: beside the surface
         /// everything goes with the root of the depth.
@@ -77,11 +77,11 @@ tuning! {
         samples_of_parts: usize = 24, moves "Chebyshev bounds through events";
         /// Points spread over the box that tell the share of it in which an event occurs.
         points_of_share: usize = 1 << 14, moves "shares of the box";
-        /// Such points miss a volume by so many times the expected share.
+        /// Factor on the share of a volume that such points are expected to miss.
         missed_share: f64 = 2.0, moves "shares of the box";
         /// Difference by which slopes of surfaces are taken.
         step_of_surfaces: f64 = 1e-6, moves "errors of Chebyshev bounds through events";
-        /// An end beside a surface is moved with it where it is nearer than so many times the surface's error.
+        /// An end beside a surface is moved with it where it is nearer than this multiple of the surface's error.
         near_end: f64 = 2.0, moves "errors of Chebyshev bounds through events";
         /// Shares of the depth of a part from which on samples tell errors of their own.
         depths_of_errors: [f64; 2] = [1.0 / 32.0, 1.0 / 8.0], moves "errors of Chebyshev bounds through events";
@@ -111,13 +111,15 @@ tuning! {
         grazing_shares: [f64; 3] = [1e-4, 1e-6, 1e-8], moves "Chebyshev bounds through events";
         /// Further samples at each of these depths for each dimension of the surface.
         grazing_samples: usize = 8, moves "Chebyshev bounds through events";
-        /// Samples are no nearer to a surface than so many times its error, within which they may be on its other side.
+        /// Least distance of samples from a surface, as a multiple of its error, within which they may be on its other
+        /// side.
         beyond_error: f64 = 2.0, moves "Chebyshev bounds through events";
         /// Halvings of a line on which a level is looked for.
         halvings_of_line: usize = 40, moves "Chebyshev bounds through events";
-        /// Of the samples that a part lacks on the side of a surface without the event, one in so many is beside it.
+        /// Of the samples that a part lacks on the side of a surface without the event, one in this many is beside it.
         beside_surface: usize = 3, moves "Chebyshev bounds through events";
-        /// A fit at a point outside of the samples may be off by so many times, squared, the samples' error.
+        /// Largest leverage of a fit at a point outside of the samples: the square of its error there over the samples'
+        /// error.
         far_outside: f64 = 2.0, moves "Chebyshev bounds through events";
         /// Points outside of the samples that are added at once.
         covering: usize = 4, moves "Chebyshev bounds through events";
@@ -140,10 +142,10 @@ tuning! {
         beyond_branch: f64 = 0.02, moves "Chebyshev bounds through events";
         /// How far it does as a share of the step there, at most: farther a polynomial through nodes says nothing.
         beyond_step: f64 = 0.2, moves "Chebyshev bounds through events";
-        /// Where motions are expanded at a time, the branch of a segment goes on beyond it by so many times the longest
-        /// step there, at most.
+        /// Where motions are expanded at a time, the branch of a segment goes on beyond it by at most this multiple of
+        /// the longest step there.
         beyond_longest: f64 = 2.0, moves "Chebyshev bounds through events";
-        /// A part is between two events at a time where it is by so many times the errors of their instants.
+        /// A part is between two events at a time that is this multiple of their instants' errors from both.
         safety_of_common: f64 = 2.0, moves "Chebyshev bounds through events";
         /// Where so much of a segment is predicted, motions at times of other segments are not held against it.
         shared_segment: f64 = 0.5, moves "errors of Chebyshev bounds through events";
