@@ -37,7 +37,7 @@ tuning! {
         /// Regions of fewer nodes than this are not worth the question.
         least_region: usize = 4, moves "which instructions are skipped";
         /// Instructions are grouped by operation within stretches of this many: grouping saves dispatches, a limit
-        /// keeps what is alive within the first-level cache.
+        /// keeps live values within the first-level cache.
         window_of_grouping: usize = 256, moves "time only";
         /// Symbols by which the derivatives are taken at once.
         slopes_at_once: usize = 31, moves "time only";

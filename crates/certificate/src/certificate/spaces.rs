@@ -53,7 +53,7 @@ impl Cell {
 }
 
 impl Space {
-    /// In so many parameters.
+    /// In `parameters` parameters.
     pub fn new(parameters: usize, order: usize) -> Self {
         let [cell, box_of] =
             [parameters + 1, parameters].map(|variables| ModelSpace::new(variables, order).with_ranges_of_signs());

@@ -31,7 +31,7 @@ impl Along {
         Self { values: window, bends, before, after, at, count }
     }
 
-    /// The value so many samples further, at most four.
+    /// The value `away` samples further, at most four.
     fn value(&self, away: isize) -> Option<f64> {
         self.is_known(away).then(|| self.values[4_usize.wrapping_add_signed(away)])
     }
@@ -40,7 +40,7 @@ impl Along {
         away.unsigned_abs() <= if away < 0 { self.before } else { self.after }
     }
 
-    /// The second difference so many samples further, less than four.
+    /// The second difference `away` samples further, less than four.
     fn bend(&self, away: isize) -> Option<f64> {
         let is_known = self.is_known(away - 1) && self.is_known(away + 1);
         is_known.then(|| self.bends[3_usize.wrapping_add_signed(away)])

@@ -1,6 +1,6 @@
 //! Bisection.
 
-/// The end beyond a change, between a number before it and one beyond it, after so many bisections.
+/// The end beyond a change, between a number before it and one beyond it, after `bisections` bisections.
 pub fn bisected(mut before: f64, mut beyond: f64, bisections: usize, is_beyond: impl Fn(f64) -> bool) -> f64 {
     for _ in 0..bisections {
         let middle = 0.5 * (before + beyond);

@@ -20,8 +20,8 @@ use super::tuning::TUNING;
 const SIGNS: [f64; 2] = [-1.0, 1.0];
 
 /// Extremes of functions over [−1, 1]^k at once: `evaluate` gives their values at some ξ, function by function. The
-/// first lattice, of `lattices`, has `intervals` ≥ 2 along each axis. What is not more than `least`, a number for each
-/// function, is not looked for: at least their rounding. Unknown where a value on a lattice is NaN.
+/// first lattice, of `lattices`, has `intervals` ≥ 2 along each axis. Differences of at most `least`, a number for each
+/// function and at least its rounding, are not searched for. Unknown where a value on a lattice is NaN.
 pub fn extremes(
     lattices: &Lattices,
     intervals: &[usize],
@@ -220,7 +220,7 @@ impl Search {
         more
     }
 
-    /// From the best of all ends, over so many parameters.
+    /// From the best of all ends, over `dimension` parameters.
     fn extent(&self, dimension: usize) -> Extent {
         let best = |(sign, omitted): (f64, &Vec<(usize, f64)>)| {
             let omitted = omitted.last().map_or(f64::NEG_INFINITY, |&(_, height)| height);
@@ -265,7 +265,7 @@ struct End {
     /// Whether the neighbours are nearer than those that were no better than the best.
     is_near: bool,
     found: bool,
-    /// Whether it was left though it may be the best by what does not matter.
+    /// Whether it was left although it may be the best by an amount that does not matter.
     given_up: bool,
 }
 

@@ -3,8 +3,8 @@
 /// Grades of the table.
 const GRADES: std::ops::RangeInclusive<u8> = 5..=12;
 
-/// Widths of tolerance zones in µm for IT5 to IT12: sizes up to and including so many mm, above those of the row before
-/// (ISO 286-1:2010, table 1).
+/// Widths of tolerance zones in µm for IT5 to IT12, by size: up to and including this one in mm, above that of the row
+/// before (ISO 286-1:2010, table 1).
 const TABLE: [(f64, [u16; 8]); 21] = [
     (3.0, [4, 6, 10, 14, 25, 40, 60, 100]),
     (6.0, [5, 8, 12, 18, 30, 48, 75, 120]),
@@ -50,7 +50,7 @@ mod tests {
         [7.0, 10.0, 16.0, 25.0, 40.0, 64.0, 100.0, 160.0][usize::from(grade) - 5] * factor
     }
 
-    /// Sizes up to so many mm, grades and widths in µm where the standard's table leaves its formulas by more than
+    /// Largest sizes in mm, grades and widths in µm where the standard's table leaves its formulas by more than
     /// rounding.
     const FURTHER: [(f64, u8, f64); 7] = [
         (3.0, 7, 10.0),

@@ -42,7 +42,7 @@ impl CheckedLattice {
 }
 
 impl Lattices {
-    /// The lattice with so many intervals along each axis.
+    /// The lattice with `intervals[i]` intervals along axis i.
     pub(super) fn of(&self, intervals: &[usize]) -> Arc<CheckedLattice> {
         let mut kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(known) = kept.lattices.get(intervals) {

@@ -14,7 +14,7 @@ pub struct Ledger {
 }
 
 impl Ledger {
-    /// Of so many rows and outputs, of which nothing is known yet.
+    /// Of `rows` rows and `outputs` outputs, of which nothing is known yet.
     pub fn new(rows: usize, outputs: usize) -> Self {
         Self { outputs, ends: Mutex::new(vec![EMPTY; rows * outputs]) }
     }

@@ -34,7 +34,7 @@ impl Peak {
         std::iter::once(middle).chain(alone.chain(beside).map(|moves| self.neighbour(moves)))
     }
 
-    /// ξ of the middle moved by so many spacings along one or two axes.
+    /// ξ of the middle after `moves` (axis, number of spacings) along one or two axes.
     fn neighbour(&self, moves: [(usize, f64); 2]) -> Vec<f64> {
         let mut xi = self.center.clone();
         moves.into_iter().for_each(|(axis, by)| xi[axis] = self.center[axis] + by * self.spacing[axis]);

@@ -77,7 +77,7 @@ pub fn corners(k: usize, most: usize) -> Vec<Vec<f64>> {
     (0..if all { 1 << k } else { most }).map(|index| (0..k).map(|axis| sign(index, axis)).collect()).collect()
 }
 
-/// So many points spread evenly over the inside of the box (the additive recurrence of Kronecker).
+/// `count` points spread evenly over the inside of the box (the additive recurrence of Kronecker).
 pub fn spread(k: usize, count: usize) -> Vec<Vec<f64>> {
     // Roberts' generalisation of the golden ratio: the root of x^(k+1) = x + 1.
     let mut ratio = 1.5_f64;
@@ -111,7 +111,7 @@ pub fn step_validation(k: usize) -> Vec<Vec<f64>> {
 }
 
 /// Corners at which functions are largest and least by their slopes along the axes from the middle of the box, the
-/// farthest of them first and at most so many: no sample near to the middle tells of what one corner alone changes.
+/// farthest first and at most `most`: no sample near the middle shows an effect of one corner alone.
 ///
 /// Functions are given by a scale and by their values at [`step_validation`]; none is asked of up to three axes, all of
 /// whose corners are among these.

@@ -51,7 +51,7 @@ fn include([least, largest]: &mut [Extreme; 2], [low, high]: [Extreme; 2]) {
 }
 
 impl ScanBounds {
-    /// Before the first sample of a grid with so many points along each axis.
+    /// Before the first sample of a grid with `points[i]` points along axis i.
     pub fn new(times: usize, outputs: usize, points: &[usize]) -> Self {
         Self {
             outputs,
@@ -75,7 +75,7 @@ impl ScanBounds {
         }
     }
 
-    /// Values in some rows (row, output, sample) of so many of the grid's samples, from number `first` on.
+    /// Takes in values in some rows (row, output, sample) of `count` of the grid's samples, from number `first` on.
     pub fn observe(&mut self, rows: Rows<usize>, first: usize, count: usize, values: &[f64]) {
         if count == 0 {
             return;

@@ -87,7 +87,7 @@ impl SegmentMotions {
     }
 
     /// Positions and velocities at a time on a segment's branch, which goes on beyond its ends; `None` where a sample
-    /// is beyond all steps there by more than so many times their length.
+    /// is beyond all steps there by more than `most_beyond` times their length.
     pub fn at(&self, segment: usize, time: f64, most_beyond: f64) -> Option<BranchMotion> {
         let (steps, count) = (&self.steps[segment], self.samples.len());
         let lines = self.nodes[segment].first().map_or(0, |node| node.len() / count.max(1));
@@ -211,8 +211,8 @@ impl BranchWeights {
 }
 
 /// The step of a segment that is least beyond a share, in its own lengths, and the place of the share in it: steps are
-/// shorter beside events, so that a longer one before reaches farther. `None` where it is beyond by more than so many
-/// times the step's length.
+/// shorter beside events, so that a longer one before reaches farther. `None` where it is beyond by more than
+/// `most_beyond` times the step's length.
 pub fn nearest_step(ends: &[f64], share: f64, most_beyond: f64) -> Option<(usize, f64)> {
     let local = |step: usize| {
         let begin = step.checked_sub(1).map_or(0.0, |before| ends[before]);

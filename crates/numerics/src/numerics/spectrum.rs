@@ -87,7 +87,7 @@ impl Spectrum {
         found.map_or(f64::NAN, |found| found[0])
     }
 
-    /// A band in so many bins: half of them evenly (by equal factors in a wide band), half by their variance.
+    /// A band in `count` bins: half of them evenly (by equal factors in a wide band), half by their variance.
     pub fn bins(&self, band: [f64; 2], count: usize) -> Vec<Bin> {
         let [from, to] = band;
         let is_wide = from > 0.0 && to > TUNING.wide_bin * from;

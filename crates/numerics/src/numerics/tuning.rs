@@ -22,7 +22,7 @@ tuning! {
         distances: i32 = 26, moves "ranges beside jumps";
         /// A drop by this share of the range's width may be a jump.
         drop: f64 = 1e-3, moves "ranges beside jumps";
-        /// After so many halvings two numbers in [−1, 1] have no other between them.
+        /// Halvings after which two numbers in [−1, 1] have no other between them.
         halvings_of_brink: usize = 64, moves "ranges beside jumps";
         /// Most rounds over all multipliers of constraints in a search for the cheapest sizes.
         rounds_of_cheapest: usize = 400, moves "tolerances that are found";
@@ -148,7 +148,7 @@ tuning! {
         least_order: f64 = 1.5, moves "errors of time steps";
         /// Below this order nothing converges, and the difference of two steps tells nothing of their error.
         no_order: f64 = 0.25, moves "errors of time steps";
-        /// Where the order is not that of the scheme, the largest difference counts so many times.
+        /// Factor on the largest difference, where the order is not that of the scheme.
         of_differences: f64 = 1.5, moves "errors of time steps";
         /// Factor by which the next neighbours of a peak's best point are nearer.
         nearer: f64 = 0.25, moves "ranges, within their error";

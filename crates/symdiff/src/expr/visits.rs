@@ -15,7 +15,7 @@ pub(super) struct Visits {
 }
 
 impl Visits {
-    /// Of another derivative in a graph of so many nodes.
+    /// Begins another derivative in a graph of `nodes` nodes.
     pub fn begin(&mut self, nodes: usize) {
         if self.derivative == u32::MAX {
             self.seen_by.fill(0);

@@ -10,7 +10,7 @@ pub(crate) struct NodeTable {
 }
 
 impl NodeTable {
-    /// Of a graph of so many nodes.
+    /// For a graph of `nodes` nodes.
     pub fn new(nodes: usize) -> Self {
         Self { numbers: vec![0; nodes] }
     }
@@ -42,12 +42,12 @@ impl NodeTable {
 pub(crate) struct NodeSet(Vec<bool>);
 
 impl NodeSet {
-    /// None of a graph of so many nodes.
+    /// None of a graph of `nodes` nodes.
     pub fn new(nodes: usize) -> Self {
         Self(vec![false; nodes])
     }
 
-    /// These of a graph of so many nodes.
+    /// These of a graph of `nodes` nodes.
     pub fn of(nodes: usize, members: impl IntoIterator<Item = Expr>) -> Self {
         let mut set = Self::new(nodes);
         members.into_iter().for_each(|expr| set.0[expr.index()] = true);

@@ -138,7 +138,7 @@ struct Queue {
 }
 
 impl Ready {
-    /// None, of a window of so many.
+    /// None, of a window of `window` instructions.
     fn of(window: usize) -> Self {
         Self { queues: Vec::new(), after: vec![None; window] }
     }
@@ -172,8 +172,8 @@ struct Grouping {
 }
 
 impl Grouping {
-    /// Within stretches of so many instructions, brings equal operations together: of those that are ready, always
-    /// all of the operation that has most.
+    /// Brings equal operations together within stretches of a fixed number of instructions: of those that are ready,
+    /// always all of the operation that has most.
     fn group(&mut self, pending: Vec<Pending>) -> Vec<Pending> {
         let mut grouped = Vec::with_capacity(pending.len());
         for window in pending.chunks(TUNING.window_of_grouping) {

@@ -97,7 +97,7 @@ pub struct Figure {
     pub low: Option<f64>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub high: Option<f64>,
-    /// Of a share: so many of so many independent trials.
+    /// Of a share: `count` of `of` independent trials.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub count: Option<u64>,
     #[serde(default, skip_serializing_if = "Option::is_none")]

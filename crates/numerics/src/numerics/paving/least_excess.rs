@@ -22,7 +22,7 @@ pub struct LeastExcess {
 type Candidate = Ranked<PavingBox>;
 
 /// Minimises, over the box, the largest excess of a quantity beyond its outer interval, in units of its scale: by
-/// branch and bound to a tolerance, or over so many boxes.
+/// branch and bound to a tolerance, or over at most `boxes` boxes.
 pub fn least_excess(
     tubes: &Tubes,
     tolerance: f64,

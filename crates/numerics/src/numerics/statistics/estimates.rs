@@ -27,7 +27,7 @@ impl Estimate {
     }
 }
 
-/// The 95 % confidence interval of a share of which so many of all samples were seen (C. J. Clopper & E. S. Pearson,
+/// The 95 % confidence interval of a share that was seen in `seen` of `of` samples (C. J. Clopper & E. S. Pearson,
 /// Biometrika 26 (1934) 404). Points that are spread evenly are no worse than random ones.
 pub fn share_interval(seen: usize, of: usize) -> [f64; 2] {
     let (seen, left) = (seen as f64, of.saturating_sub(seen) as f64);

@@ -14,7 +14,7 @@ pub struct Mixture {
 }
 
 impl Mixture {
-    /// Adds a place, unless one is near or there are so many already.
+    /// Adds a place, unless one is near or there are `most` already.
     pub fn add(&mut self, place: Vec<f64>, most: usize) {
         let is_new = |known: &Vec<f64>| distance(known, &place) > TUNING.places_apart;
         if self.places.len() < most && self.places.iter().all(is_new) {
@@ -32,7 +32,7 @@ impl Mixture {
         self.places.is_empty()
     }
 
-    /// One replicate's points in so many dimensions, and their weights.
+    /// One replicate's `count` points in `k` dimensions, and their weights.
     pub fn replicate(&self, number: usize, k: usize, count: usize) -> (Vec<Vec<f64>>, Vec<f64>) {
         let numbers = replicate(number, k + 1, count);
         let points: Vec<Vec<f64>> = numbers.chunks_exact(k + 1).map(|numbers| self.drawn(numbers)).collect();

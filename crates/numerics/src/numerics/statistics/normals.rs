@@ -25,7 +25,7 @@ impl Normals {
         (mixed(self.stream.wrapping_mul(0x2545_f491_4f6c_dd1d).wrapping_add(self.drawn)) as f64 + 0.5) * UNIT
     }
 
-    /// So many normal numbers.
+    /// `k` normal numbers.
     pub fn draw(&mut self, k: usize) -> Vec<f64> {
         (0..k).map(|_| normal_quantile(self.uniform())).collect()
     }

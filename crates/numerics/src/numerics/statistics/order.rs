@@ -34,13 +34,13 @@ pub fn sample_quantile(sorted: &[f64], share: f64) -> Estimate {
     SampleQuantile::new(share, sorted.len(), 0.05).of(sorted)
 }
 
-/// Whether so many samples have a confidence interval for a quantile.
+/// Whether `count` samples have a confidence interval for a quantile.
 pub fn has_interval(share: f64, count: usize) -> bool {
     ranks(share, count, 0.05).is_some()
 }
 
-/// The quantile of so many sorted independent samples. Its confidence interval has samples as ends, for any law: as
-/// many lie below the quantile as of a binomial law.
+/// The quantile of a number of sorted independent samples. Its confidence interval has samples as ends, for any law:
+/// the number below the quantile has a binomial law.
 #[derive(Clone, Debug)]
 pub struct SampleQuantile {
     share: f64,

@@ -305,7 +305,7 @@ mod tests {
         }
     }
 
-    /// How many of so many draws hold the truth, and how many are stated.
+    /// Of `count` draws, how many intervals hold the truth, and how many are stated.
     fn held(count: usize) -> (usize, usize) {
         let (mut held, mut stated) = (0, 0);
         for number in 0..count {

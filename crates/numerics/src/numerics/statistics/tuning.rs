@@ -17,7 +17,7 @@ tuning! {
         places_apart: f64 = 0.7, moves "shares of failing products";
         /// Random shifts of a lattice of samples: the replicates tell sampling errors.
         replicates: usize = 16, moves "statistics, and their sampling errors";
-        /// Quantiles of at most so many samples of a replicate are those of all replicates together.
+        /// Most samples of a replicate whose quantiles are those of all replicates together.
         pooled: usize = 1 << 12, moves "quantiles of few samples, and their sampling errors";
         /// Largest normal score up to which a law without a closed quantile is tabulated.
         farthest_score: i32 = 9, moves "samples of laws without a closed quantile";
@@ -42,11 +42,11 @@ tuning! {
         /// Subset simulation's chains depend on each other, and its replicates are not normal: so much wider is its
         /// interval.
         dependent_chains: f64 = 1.6, moves "rare shares of failing products";
-        /// A point that fails is left out where it stands for more than so many times the share.
+        /// A point that fails is left out where its weight exceeds this multiple of the share.
         uncovered: f64 = 30.0, moves "rare shares of failing products";
         /// Rays find where the slack changes its sign to so much of the share.
         along_ray: f64 = 1e-3, moves "rare shares of failing products";
-        /// Of intervals of two methods, so many times the wider one may part them.
+        /// Largest distance of two methods' shares, as a multiple of the sum of their intervals' half widths.
         intervals_apart: f64 = 2.0, moves "rare shares of failing products";
         /// Largest distance at which the likeliest point that fails is looked for, in normal scores.
         farthest_likeliest: f64 = 8.0, moves "rare shares of failing products";
@@ -54,7 +54,7 @@ tuning! {
         steps_of_ray: usize = 20, moves "rare shares of failing products";
         /// Steps to each change of sign along a ray.
         secants: usize = 5, moves "rare shares of failing products";
-        /// How far beyond the usual length of a point in so many dimensions a ray leads.
+        /// Length of a ray beyond √k, the usual length of a point in k dimensions.
         beyond_usual: f64 = 8.0, moves "rare shares of failing products";
         /// Samples of a replicate in each level of subset simulation.
         samples_of_level: usize = 500, moves "rare shares of failing products";

@@ -38,7 +38,7 @@ pub(crate) struct Record {
 }
 
 impl Record {
-    /// A run of a tape in a memory of so many lanes begins.
+    /// A run of a tape in a memory of `width` lanes begins.
     pub fn begin(&mut self, tape: &Tape, width: usize) {
         self.runs.push((self.replaced.len(), self.parts.len()));
         self.replaced.reserve(tape.written() * width);
