@@ -11,7 +11,7 @@ pub(super) struct Answers {
 }
 
 impl Answers {
-    /// Of so many points, none of which has one.
+    /// Of `count` points, none of which has one.
     pub fn of(count: usize) -> Self {
         Self { found: (0..count).map(|_| None).collect(), open: count }
     }

@@ -35,7 +35,7 @@ struct Columns {
 }
 
 impl Table {
-    /// Of so many points.
+    /// Of `points` points.
     pub fn of(points: usize) -> Self {
         Self { columns: None, rows: vec![Vec::new(); points] }
     }

@@ -128,7 +128,7 @@ pub struct Band {
 }
 
 impl OutputBounds {
-    /// The same over so many rows, unknown where these have none.
+    /// The same over `rows` rows, unknown where these have none.
     #[must_use]
     pub fn padded(&self, rows: usize) -> Self {
         let band = |band: &Band| Band {
@@ -151,7 +151,7 @@ impl OutputBounds {
 }
 
 impl Contribution {
-    /// The same over so many rows, unknown where these have none.
+    /// The same over `rows` rows, unknown where these have none.
     #[must_use]
     pub fn padded(&self, rows: usize) -> Self {
         Self {

@@ -76,9 +76,9 @@ pub struct WorstCase {
 /// How many samples have a value.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Occurrence {
-    /// Those that have one.
+    /// Number of samples with a value.
     pub samples: usize,
-    /// Of so many.
+    /// Number of samples.
     pub of: usize,
     /// Parameters of one that has none.
     #[serde(skip_serializing_if = "Option::is_none")]

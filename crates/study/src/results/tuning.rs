@@ -26,7 +26,7 @@ tuning! {
         flat_order: f64 = 1.0, moves "verdicts of verifications";
         /// Largest error that may be rounding's because it hardly falls.
         small_error: f64 = 1e-6, moves "verdicts of verifications";
-        /// Errors of less than so many times that of rounding are touched by it.
+        /// Errors below this multiple of that of rounding are affected by it.
         touched: f64 = 3.0, moves "verdicts of verifications";
     }
 }

@@ -148,7 +148,7 @@ impl PartStore {
         PartWriter::begin(&self.path(PARTS, name, "part"))
     }
 
-    /// Whether a task of so many seconds is simulated here.
+    /// Whether a task of `seconds` seconds is simulated here.
     pub fn simulates(&self, seconds: f64) -> bool {
         match self.missing {
             Missing::Simulate => true,

@@ -94,7 +94,7 @@ pub struct Shard {
 }
 
 impl Shard {
-    /// Shards of at most so many seconds, where a part does not take longer, from the deferred tasks of a model.
+    /// Shards of at most `seconds` seconds, where a part does not take longer, from the deferred tasks of a model.
     pub fn of(model: usize, scene: Option<&str>, deferred: &[Deferred], seconds: f64) -> Vec<Self> {
         let mut shards: Vec<Self> = Vec::new();
         for task in deferred {

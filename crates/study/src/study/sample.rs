@@ -195,8 +195,8 @@ impl Trajectories<'_> {
         self.studies.iter().zip(self.steps).try_for_each(|(study, plan)| plan_reduction(study, plan))
     }
 
-    /// What all samples were reduced to: of so many reduced outputs and requirements the values, sample by sample, the
-    /// reduced outputs first; NaN where one is unknown.
+    /// Values of `reduced` reduced outputs and then `requirements` requirements, sample by sample; NaN where one is
+    /// unknown.
     pub(super) fn numbers(&self, reduced: usize, requirements: usize) -> Vec<f64> {
         let width = reduced + requirements;
         let mut all = vec![f64::NAN; self.chosen.count * width];

@@ -5,8 +5,8 @@ use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
 /// Threads that share the work of a run.
 pub struct Threads(Option<ThreadPool>);
 
-/// The threads of a run: so many, or one per core. Where the target has none, as in a browser, the work is done on the
-/// thread that asks for it.
+/// The threads of a run: `threads`, or one per core. Where the target has none, as in a browser, the work is done on
+/// the thread that asks for it.
 ///
 /// # Errors
 /// Where they cannot be started.

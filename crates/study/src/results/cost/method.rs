@@ -19,7 +19,7 @@ pub enum CostMethod {
 /// What integrates a motion in place of plain steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Integrator {
-    /// HHT-I3 with steps h, h/2, … of so many levels, extrapolated.
+    /// HHT-I3 with steps h, h/2, … of several levels, extrapolated.
     Extrapolated {
         /// 2 to 4.
         levels: usize,

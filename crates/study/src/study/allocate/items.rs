@@ -135,7 +135,7 @@ pub fn with_tolerances(description: &Description, items: &[Item], multiples: &[f
     model
 }
 
-/// A law whose distance from the nominal value is so many times as large.
+/// Multiplies the distance of a law from the nominal value by `multiple`.
 fn scale(law: &mut Law, nominal: f64, multiple: f64) {
     if multiple == 1.0 || !follows_tolerance(law, nominal) {
         return;

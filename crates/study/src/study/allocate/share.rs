@@ -92,7 +92,7 @@ impl<'s> Share<'s> {
         mixture
     }
 
-    /// What each sample leaves, by requirement; and what each stands for.
+    /// The samples' slacks, by requirement; and the samples' weights.
     fn slacks(&mut self, multiples: &[f64]) -> (Vec<f64>, Vec<f64>) {
         self.draw(multiples);
         let Some(drawn) = &self.drawn else { return Default::default() };
@@ -100,7 +100,7 @@ impl<'s> Share<'s> {
         (self.surface.slacks(&samples), drawn.weights.clone())
     }
 
-    /// What each of so many samples leaves of the requirement of which it leaves least.
+    /// The least slack of each of `n` samples over all requirements.
     fn worst(&self, slacks: &[f64], n: usize) -> Vec<f64> {
         let least =
             |sample: usize| (0..self.surface.count).map(|own| slacks[own * n + sample]).fold(f64::INFINITY, f64::min);

@@ -53,7 +53,7 @@ tuning! {
         /// A margin that is unknown is taken for one that is this far from being fulfilled: an event that does not
         /// occur fails.
         unknown_margin: f64 = -10.0, moves "tolerances and nominal values that are found, if an event may not occur";
-        /// Where the surrogate over the widest box is not known, the box is made smaller so many times.
+        /// Times that the widest box is made smaller, at most, if its surrogate is not known.
         narrower_boxes: usize = 4, moves "which surrogate tolerances are found by";
         /// The surrogate's order is raised while its margins are off by more than this share of the nominal ones.
         rough: f64 = 0.02, moves "which surrogate tolerances are found by";

@@ -30,14 +30,14 @@ use crate::syntax::{Code, Coded};
 const INTERRUPTED: &str =
     "interrupted: methods that were done are kept, of the one that was not what it had found of every sample";
 
-/// Why a run ended early, or what of it is left out, for people.
+/// Why a run ended early, or which of its results are left out, for people.
 pub struct Note {
     text: String,
     code: Option<Code>,
 }
 
 impl Note {
-    /// What an error stopped, and what is kept nevertheless.
+    /// The error that stopped a run, and the results that are kept.
     pub fn of(error: &SimulationError, kept: &str) -> Self {
         Self { text: format!("{error}; {kept}"), code: error.code() }
     }

@@ -78,7 +78,7 @@ impl Placed {
 }
 
 impl Kept {
-    /// Of all subsystems of a model of so many outputs.
+    /// Of all subsystems of a model of `outputs` outputs.
     pub(in crate::study) fn of_parts(parts: Vec<(KeptPart, &Subsystem)>, outputs: usize) -> Self {
         let mut indices = vec![(0, 0); outputs];
         for (number, (_, subsystem)) in parts.iter().enumerate() {
@@ -111,7 +111,7 @@ impl Kept {
         &self.parts[part].part.errors[index]
     }
 
-    /// Whether values of the first so many outputs, and all reduced outputs and margins, are within the tolerance.
+    /// Whether values of the first `outputs` outputs, and all reduced outputs and margins, are within the tolerance.
     pub fn is_resolved(&self, outputs: usize) -> bool {
         let mut reduced = self.parts.iter().filter_map(|placed| placed.part.reduced.as_ref());
         (0..outputs).all(|output| !self.error(output).unresolved.contains(&true))
@@ -157,7 +157,7 @@ impl Kept {
         Margins::of(asked.map(Placed::margins).collect::<Option<Vec<_>>>()?).filter(|margins| margins.count() > 0)
     }
 
-    /// All of so many reduced outputs. `None` where there are none, or one of them is not known.
+    /// All `count` reduced outputs. `None` where there are none, or one of them is not known.
     pub fn reduced(&self, count: usize) -> Option<ReducedValues<'_>> {
         let asked = self.parts.iter().filter(|placed| !placed.reduced.is_empty());
         ReducedValues::of(asked.map(Placed::margins).collect::<Option<Vec<_>>>()?, count).filter(|_| count > 0)

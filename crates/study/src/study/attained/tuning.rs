@@ -23,8 +23,8 @@ tuning! {
         least_points: usize = 16, moves "bounds of models with many parameters";
         /// Most points of polynomials beside the middle of the box: two more than the parameters.
         most_points: usize = 32, moves "bounds of models with many parameters";
-        /// Points of polynomials that are the surrogate of a run: with so many, what 100 parameters of a chain leave
-        /// to statistics is a tenth of their spread.
+        /// Points of polynomials that are the surrogate of a run: with this many, the error that 100 parameters of a
+        /// chain leave to statistics is a tenth of their spread.
         kept_points: usize = 64, moves "bounds of models with many parameters";
         /// A step that promises less than this share of the output's range in the row is left out.
         worth_of_step: f64 = 1e-3, moves "bounds of models with many parameters";

@@ -186,7 +186,7 @@ impl ProgramSource {
         })
     }
 
-    /// All parameters at samples of the uncertain ones, with steps that are so many times finer.
+    /// All parameters at samples of the uncertain ones, with steps that are `refinement` times finer.
     fn points(&self, samples: &[Sample], refinement: f64) -> Vec<Vec<f64>> {
         let mut parameters = self.parameters.clone();
         if let Some(Refine { parameter, by }) = self.own.refine.filter(|_| refinement != 1.0)

@@ -100,8 +100,8 @@ pub fn as_constants(bounded: &Bounded, output: usize, rows: usize) -> f64 {
     (0..rows).map(of_row).fold(0.0, f64::max)
 }
 
-/// Flags rows in which two methods exclude each other: one of them is wrong, and nothing tells which. What is proven is
-/// not.
+/// Flags rows in which two methods exclude each other: one of them is wrong, and nothing tells which. Proven bands are
+/// not flagged.
 fn flag_exclusions(bands: &mut [Band]) {
     let rows = bands.first().map_or(0, |band| band.lower.len());
     let mut excluded: Vec<(usize, usize)> = Vec::new();

@@ -11,7 +11,7 @@ pub struct Attained {
 }
 
 impl Attained {
-    /// Of so many rows and outputs, of which nothing is known.
+    /// Of `rows` rows and `outputs` outputs, of which nothing is known.
     pub fn new(rows: usize, outputs: usize) -> Self {
         Self { outputs, samples: Vec::new(), ends: vec![[None; 2]; rows * outputs] }
     }

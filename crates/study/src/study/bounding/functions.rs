@@ -50,7 +50,7 @@ pub struct FunctionEnds {
 }
 
 impl FunctionEnds {
-    /// Of so many rows and outputs, of which nothing is known.
+    /// Of `rows` rows and `outputs` outputs, of which nothing is known.
     pub fn new(rows: usize, outputs: usize, inputs: Vec<usize>) -> Self {
         let unknown = FunctionEnd { value: f64::NAN, open: f64::NAN };
         let (ends, steps) = (vec![[unknown; 2]; rows * outputs], vec![None; rows * outputs]);

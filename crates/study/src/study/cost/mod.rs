@@ -53,7 +53,7 @@ pub enum CostError {
     /// A reference would take most of the budget, or more.
     #[error("even a coarse reference takes {seconds:.1} s")]
     TooCostly {
-        /// What it takes, s.
+        /// Time that it takes, s.
         seconds: f64,
     },
     /// A reference would take too many simulations.

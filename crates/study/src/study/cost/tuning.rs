@@ -49,7 +49,7 @@ tuning! {
         share_of_reference: f64 = 0.35, moves "the reference of a cost study";
         /// Share of the budget that the reference's scan may take.
         share_of_scan: f64 = 0.25, moves "the reference of a cost study";
-        /// Runs are repeated until they have taken so many seconds together, unless they were repeated often enough.
+        /// Time after which a run is not repeated again, s.
         long_enough: f64 = 0.15, moves "times in cost studies";
         /// Most repetitions of a run.
         often_enough: usize = 5, moves "times in cost studies";

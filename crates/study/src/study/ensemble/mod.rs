@@ -148,7 +148,7 @@ impl<'a> Motions<'a> {
         instructions_of_step(self.simulator)
     }
 
-    /// Rows of a block with so many lines of so many samples.
+    /// Rows of a block with `lines` lines of `samples` samples.
     pub fn rows_a_block(lines: usize, samples: usize) -> usize {
         (TUNING.block_values / (lines * samples).max(1)).clamp(1, TUNING.most_rows)
     }

@@ -27,7 +27,7 @@ fn of_store(error: StoreError) -> SimulationError {
     SimulationError::Store { message: error.to_string() }
 }
 
-/// Samples of a part with so many lines and rows.
+/// Samples of a part with `lines` lines and `rows` rows.
 pub(in crate::study) fn samples_of_part(lines: usize, rows: usize) -> usize {
     let of_sample = (8 * lines * rows).max(1);
     (TUNING.part_bytes / of_sample).clamp(TUNING.fewest_of_part, TUNING.most_of_part) / TUNING.fewest_of_part
@@ -245,12 +245,12 @@ fn bytes_of(motions: &Motions, task: &Task) -> u64 {
     }
 }
 
-/// Size of the values of so many samples.
+/// Size of the values of `samples` samples, bytes.
 pub(in crate::study) fn bytes_of_values(lines: usize, rows: usize, samples: usize) -> u64 {
     (8 * lines * rows) as u64 * samples as u64
 }
 
-/// Size of the parts of a scan of so many samples, at most.
+/// Size of the parts of a scan of `samples` samples, at most, bytes.
 pub(in crate::study) fn bytes_of_scan(outputs: usize, rows: usize, samples: usize) -> u64 {
     bytes_of_values(TUNING.numbers_of_scan * outputs, rows, samples.div_ceil(ScanGrid::LEAST_SHARD))
 }

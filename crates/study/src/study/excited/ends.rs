@@ -106,7 +106,7 @@ impl Search<'_, '_> {
     fn follow_bent(&mut self) -> Result<(), SimulationError> {
         let mut bent = std::mem::take(&mut self.bent);
         bent.sort_by(|a, b| a.output.cmp(&b.output).then(a.sign.total_cmp(&b.sign)).then(a.row.cmp(&b.row)));
-        // The last row of each output's end, and every so many before it.
+        // The last row of each output's end, and rows at a fixed interval before it.
         let (mut followed, mut between): (Vec<FunctionClimb>, Vec<Bent>) = (Vec::new(), Vec::new());
         for of_end in bent.chunk_by(|a, b| a.output == b.output && a.sign == b.sign) {
             let every = of_end.len().div_ceil(TUNING.followed_rows);
@@ -127,7 +127,7 @@ impl Search<'_, '_> {
         Ok(())
     }
 
-    /// Goes on with climbs until all are done, in so many steps at most.
+    /// Goes on with climbs until all are done, in at most `steps` steps.
     fn follow(&mut self, climbs: &mut [FunctionClimb], steps: usize) -> Result<(), SimulationError> {
         for _ in 0..steps {
             let going: Vec<usize> = (0..climbs.len()).filter(|&number| climbs[number].next.is_some()).collect();

@@ -20,7 +20,7 @@ pub fn in_row(row: usize, output: usize) -> Vec<Term> {
     vec![Term { row, output, weight: 1.0 }]
 }
 
-/// Derivatives of a gradient by one of so many inputs, cell by cell; upwards by the sign.
+/// Derivatives of a gradient by one of `inputs` inputs, cell by cell; upwards by the sign.
 pub fn functional(found: &Gradient, sign: f64, input: usize, inputs: usize) -> Vec<Cell> {
     let of_cell = |by: &[f64]| [sign * by[2 * input], sign * by[2 * input + 1]];
     found.by_inputs.chunks_exact(2 * inputs).map(of_cell).collect()
@@ -117,7 +117,7 @@ impl<'s, 'm> ExcitedMotions<'s, 'm> {
         self.run(&self.schedule, asked, true)
     }
 
-    /// Values alone, with each step divided into so many; NaN where a step does not converge.
+    /// Values alone, with each step divided into `parts`; NaN where a step does not converge.
     ///
     /// # Errors
     /// As for gradients.

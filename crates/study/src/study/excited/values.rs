@@ -220,7 +220,7 @@ impl Values<'_, '_, '_> {
         Ok(true)
     }
 
-    /// Values at points, with steps divided into so many and from every so many rows.
+    /// Values at points, with steps divided into `parts` and from one in `every` rows.
     fn linear(
         &mut self,
         points: &[Point],

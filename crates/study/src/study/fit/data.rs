@@ -84,7 +84,7 @@ impl DataError {
 }
 
 impl Measurements {
-    /// At most so many of the values, spread over all by the golden ratio, so that no output is passed over.
+    /// At most `most` of the values, spread over all by the golden ratio, so that no output is passed over.
     pub(super) fn thinned(&self, most: usize) -> Self {
         if self.values.len() <= most {
             return self.clone();

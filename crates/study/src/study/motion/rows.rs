@@ -45,7 +45,7 @@ struct Running<'a> {
     numbers: usize,
 }
 
-/// How many rows one stands for that is looked at, of so many numbers.
+/// Interval of the rows that are looked at, for `numbers` numbers in all rows.
 fn every(numbers: usize) -> usize {
     numbers.div_ceil(TUNING.most_numbers).max(1)
 }
@@ -80,8 +80,8 @@ impl<'a> MotionRows<'a> {
         Ok(Self { simulator, domain, interruption, between_events: false })
     }
 
-    /// Simulates samples. What is asked is given to `keep`: the sample, whether it is its first row, and the values. The
-    /// nominal sample, the first, reaches all rows; of a sample `numbers` are kept of a row.
+    /// Simulates samples. `keep` receives the sample, whether it is its first row, and the values. The nominal sample,
+    /// the first, reaches all rows; of a sample `numbers` are kept of a row.
     pub(super) fn of_samples(
         &self,
         description: &Description,

@@ -34,7 +34,7 @@ impl PartialOrd for Gap {
 }
 
 impl Thinning<'_> {
-    /// At most so many of the rows, and the error of straight lines between them: the first and the last, then always
+    /// At most `most` of the rows, and the error of straight lines between them: the first and the last, then always
     /// the row that is furthest from its line (Ramer, Comput. Graph. Image Process. 1 (1972) 244), until all are within
     /// `enough`.
     pub fn rows(&self, times: &[f64], most: usize, enough: f64) -> (Vec<usize>, f64) {

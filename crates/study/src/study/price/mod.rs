@@ -60,7 +60,7 @@ impl Price {
         Self { simulations, seconds, at_most, threads }
     }
 
-    /// An estimate of so many seconds.
+    /// An estimate of `seconds` seconds.
     #[cfg(test)]
     pub(super) fn of_seconds(seconds: f64) -> Self {
         Self { simulations: 1.0, seconds, at_most: seconds, threads: 1 }
@@ -71,7 +71,7 @@ impl Price {
         self.at_most
     }
 
-    /// Whether it is to be asked for, where a model allows so many simulations.
+    /// Whether the run needs the user's consent, if the model allows `allowed` simulations.
     pub fn is_costly(&self, allowed: usize) -> bool {
         let much = self.simulations > TUNING.simulations || self.seconds > TUNING.seconds;
         much && self.simulations > allowed as f64

@@ -29,7 +29,7 @@ pub struct ReducedValues<'k> {
 }
 
 impl<'k> ReducedValues<'k> {
-    /// So many of these parts; `None` where one is of none.
+    /// All `count` reduced outputs, from these parts; `None` where one is of none.
     pub fn of(parts: Vec<MarginsOfPart<'k>>, count: usize) -> Option<Self> {
         let index = |number: usize| {
             let own = |part: &MarginsOfPart| part.reduced.iter().position(|&own| own == number);

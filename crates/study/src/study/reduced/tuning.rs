@@ -5,7 +5,8 @@ use symdiff::constants::tuning;
 tuning! {
     /// Bounds of numbers of a motion, and verdicts.
     "study: reduced" {
-        /// A corner's course cuts the time instead of the nominal one where it ranges so many times as far.
+        /// A corner's course cuts the time instead of the nominal one where its range exceeds this multiple of the
+        /// nominal one's.
         much_further: f64 = 4.0, moves "bounds of reduced outputs";
         /// Factor by which the estimate of a dip between rows may be wrong.
         safety_of_dip: f64 = 2.0, moves "verdicts of requirements over time";

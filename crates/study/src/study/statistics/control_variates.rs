@@ -27,7 +27,7 @@ pub(super) struct ControlVariate {
     variance: Regression,
     /// Quantiles of the simulated values alone.
     simulated: Vec<Estimate>,
-    /// The largest differences but so many as may be beyond ε.
+    /// For each number of differences that may be beyond ε, the largest of the others.
     largest: [f64; BEYOND],
 }
 
@@ -152,7 +152,7 @@ impl Moments {
     }
 }
 
-/// The largest sizes of differences but so many as may be beyond ε; NaN if one of them is.
+/// For each number of differences that may be beyond ε, the largest size of the others; NaN if a difference is NaN.
 pub(super) fn largest(differences: impl Iterator<Item = f64>) -> [f64; BEYOND] {
     let mut sizes: Vec<f64> = differences.map(f64::abs).collect();
     // NaN is the largest.

@@ -30,7 +30,7 @@ use rows::Rows;
 /// Why there are none.
 const INTERRUPTED: &str = "interrupted before statistics were done";
 
-/// Runs every method asked for, and statistics of the first so many outputs beside.
+/// Runs every method asked for, and statistics of the first `shown` outputs.
 ///
 /// # Errors
 /// As for any run. Where statistics alone fail, the summary says why.

@@ -1,5 +1,6 @@
 //! Statistics of simulated motions, each with parameters of their laws and, under random excitations, a realisation of
-//! its own: no surrogate has so many dimensions, and reduced outputs of motions that are cut at events may have none.
+//! its own: their dimensions are too many for a surrogate, and reduced outputs of motions that are cut at events may
+//! have none.
 
 use rayon::prelude::*;
 

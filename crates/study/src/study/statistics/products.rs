@@ -33,8 +33,8 @@ pub(super) struct Products {
 }
 
 impl Products {
-    /// Of the first so many outputs; `None` where the parameters are few and motions are not cut at events, a surrogate
-    /// is within the tolerance, or samples cannot be simulated.
+    /// Of the first `outputs` outputs; `None` where the parameters are few and motions are not cut at events, a
+    /// surrogate is within the tolerance, or samples cannot be simulated.
     ///
     /// # Errors
     /// Where the model cannot be simulated.

@@ -108,7 +108,7 @@ impl<'a> Rows<'a> {
         wanted.into_iter().map(|output| Ok((output, self.of_output(output, &of_row_done)?))).collect()
     }
 
-    /// One replicate's samples: every so many of the lattice's points are a lattice again.
+    /// One replicate's samples, one in `fewer`: these points of the lattice are a lattice again.
     pub fn points(&self, replicate: usize, fewer: usize) -> Vec<&[f64]> {
         self.samples[replicate].chunks_exact(self.laws.dimension()).step_by(fewer).collect()
     }

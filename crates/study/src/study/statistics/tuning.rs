@@ -41,7 +41,7 @@ tuning! {
         beyond_error: [usize; 5] = [0, 4, 16, 64, 128], moves "errors of surrogates of statistics";
         /// Samples where a model asks for no number: about a million.
         samples: usize = 1 << 20, moves "statistics of outputs";
-        /// Statistics over time have one in so many of the samples: quantiles are bands there. The row in which an
+        /// Statistics over time use one in this many of the samples: quantiles are bands there. The row in which an
         /// output varies most has all.
         over_time: usize = 16, moves "statistics of outputs";
         /// Most numbers that all samples hold together.

@@ -206,8 +206,8 @@ impl<'s> EquationsAtPoint<'s> {
 }
 
 impl Manufactured {
-    /// Near a part of a nominal motion, over as much of it from its begin on as polynomials follow, by so many halvings
-    /// at most.
+    /// Near a part of a nominal motion, over as much of it from `begin` on as polynomials follow, by at most `halvings`
+    /// halvings.
     ///
     /// # Errors
     /// Where no part of it has a smooth motion on the constraints, or its equations are not smooth along it.

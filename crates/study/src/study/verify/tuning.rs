@@ -20,7 +20,7 @@ tuning! {
         rounding_of_coefficients: f64 = 3e-16, moves "manufactured motions";
         /// Rows in which the nominal motion is followed.
         rows_of_nominal: usize = 1 << 10, moves "observed orders";
-        /// Most steps a row; if orders do not show with so many, the motion is shortened: fast vibrations take short
+        /// Most steps a row; if orders do not show with this many, the motion is shortened: fast vibrations take short
         /// steps.
         few_steps: usize = 1 << 9, moves "observed orders";
         /// Share to which a motion is shortened.
