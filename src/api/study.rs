@@ -62,7 +62,7 @@ impl<'a> Study<'a> {
         self
     }
 
-    /// The smallest and largest values on a grid with so many points a parameter: points^k simulations, always too
+    /// The smallest and largest values on a grid with `points` points a parameter: points^k simulations, always too
     /// narrow.
     #[must_use]
     pub fn scan(mut self, points: usize) -> Self {
@@ -184,7 +184,7 @@ impl<'a> Study<'a> {
         self
     }
 
-    /// Extrapolation over so many lengths of the steps, 2 to 4, by HHT-I3; 1 for none.
+    /// Extrapolation over `levels` step lengths, 2 to 4, by HHT-I3; 1 for none.
     #[must_use]
     pub fn extrapolation(mut self, levels: usize) -> Self {
         self.wrong = self.wrong.or_else(|| refused_levels(levels as f64).filter(|_| levels != 1));

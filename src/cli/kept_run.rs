@@ -36,7 +36,7 @@ impl KeptRun {
         }
     }
 
-    /// In the folder of a study, of which shards are left that take at most so many seconds.
+    /// In the folder of a study, which defers work to shards of at most `asked.shard_seconds` seconds.
     pub fn of_study(folder: PathBuf, asked: &StudyRequest) -> Self {
         Self { shard_seconds: asked.shard_seconds, ..Self::new(folder, Missing::Defer(asked.at_once)) }
     }

@@ -39,7 +39,7 @@ fn massed(mass: &MassRange) -> String {
     if mass.lower == mass.upper {
         return format!("{} kg", digits(mass.nominal));
     }
-    // So many digits that both ends differ from the middle; a narrow interval has no more than f64 holds.
+    // The fewest digits with which both ends differ from the middle; a narrow interval has no more than 12.
     let texts = |digits| [mass.nominal, mass.lower, mass.upper].map(|mass| significant(mass, digits));
     let differ = |[nominal, lower, upper]: &[String; 3]| nominal != lower && nominal != upper;
     let [nominal, lower, upper] = (4..12).map(texts).find(differ).unwrap_or_else(|| texts(12));

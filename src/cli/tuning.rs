@@ -28,7 +28,7 @@ tuning! {
         points_of_design: usize = 1 << 32, moves "which designs are refused";
         /// Most tasks of an array that every cluster takes: Slurm's default `MaxArraySize` less one.
         most_tasks: usize = 1000, moves "job arrays";
-        /// So many times a task that failed is put into the queue again.
+        /// Times that a failed task is put into the queue again, at most.
         most_requeues: usize = 3, moves "job arrays";
         /// Most values of an axis.
         values_of_axis: usize = 10_000, moves "which sweeps are refused";

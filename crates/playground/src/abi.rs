@@ -20,7 +20,7 @@ unsafe extern "C" {
     safe fn progress(text: *const u8, length: usize, fraction: f64);
     /// The message of a panic, just before the instance stops.
     safe fn panicked(text: *const u8, length: usize);
-    /// So many bytes could not be had.
+    /// An allocation of `bytes` bytes failed.
     safe fn exhausted(bytes: usize);
 }
 
@@ -69,7 +69,7 @@ impl Host for Page {
     }
 }
 
-/// Room for a question of so many bytes.
+/// Room for a question of `length` bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn allocate(length: usize) -> *mut u8 {
     Box::leak(vec![0; length].into_boxed_slice()).as_mut_ptr()

@@ -22,7 +22,7 @@ pub(in crate::cli) struct AllocateArgs {
     #[arg(long = "yield", value_name = "SHARE", value_parser = share)]
     pub share: Option<f64>,
 
-    /// Loosen no tolerance to more than so many times what the model says; grades have their own widths.
+    /// Loosen no tolerance to more than this multiple of the model's; grades have their own widths.
     #[arg(long, value_name = "TIMES", value_parser = at_least_one, default_value_t = 3.0)]
     pub widest: f64,
 

@@ -46,7 +46,7 @@ struct Job<'a> {
 }
 
 impl Job<'_> {
-    /// The shards, each task every so many of them.
+    /// Submits the shards as an array; each of its n tasks simulates every n-th one.
     fn submit_array(&self, missing: &[usize]) -> Result<String, String> {
         let tasks = missing.len().min(TUNING.most_tasks);
         let list = self.write("shards", &missing.iter().map(|number| format!("{number}\n")).collect::<String>())?;

@@ -2,7 +2,7 @@
 
 use crate::grammar::display_unit::ShownUnit;
 
-/// A value of so many significant digits; 1 or more.
+/// A value rounded to `digits` significant digits, 1 or more.
 pub fn significant(value: f64, digits: usize) -> f64 {
     format!("{value:.0$e}", digits - 1).parse().unwrap_or(value)
 }

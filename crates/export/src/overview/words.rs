@@ -19,7 +19,7 @@ pub fn digits(value: f64) -> String {
     significant(value, 4)
 }
 
-/// So many significant digits, without zeros at the end.
+/// `digits` significant digits, without zeros at the end.
 pub fn significant(value: f64, digits: usize) -> String {
     let rounded: f64 = format!("{value:.*e}", digits - 1).parse().unwrap_or(value);
     let text = match rounded.abs() {

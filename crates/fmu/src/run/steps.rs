@@ -21,7 +21,7 @@ impl Steps {
         (self.to - self.from) / self.count as f64
     }
 
-    /// Time after so many of them, s.
+    /// Time after `index` of them, s.
     pub fn time(&self, index: usize) -> f64 {
         if index == self.count { self.to } else { self.from + index as f64 * self.size() }
     }

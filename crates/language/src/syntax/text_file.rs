@@ -8,7 +8,7 @@ use super::codes::Code;
 use super::diagnostic::Diagnostic;
 use super::suggest::clip;
 
-/// The text of a file that a model names, of at most so many bytes. A pipe or a device may have no end.
+/// The text of a file that a model names, of at most `most` bytes. A pipe or a device may have no end.
 pub fn read_text(path: &Path, most: u64) -> Result<String, Box<Diagnostic>> {
     let metadata = fs::metadata(path).map_err(cannot)?;
     if !metadata.is_file() && !metadata.is_dir() {
@@ -29,7 +29,7 @@ pub fn read_given(path: &Path, most: u64) -> Result<String, Box<Diagnostic>> {
     text_of(fs::File::open(path).map_err(cannot)?, most)
 }
 
-/// The bytes of a regular file of at most so many: a pipe or a device may have no end.
+/// The bytes of a regular file, at most `most`: a pipe or a device may have no end.
 pub fn regular(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     if !fs::metadata(path)?.is_file() {
         return Err(io::Error::new(io::ErrorKind::InvalidInput, "it is no regular file"));
@@ -42,7 +42,7 @@ pub fn regular(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// The text that can be read somewhere, of at most so many bytes.
+/// The text of a source, of at most `most` bytes.
 pub fn text_of(source: impl Read, most: u64) -> Result<String, Box<Diagnostic>> {
     // A file that is not regular (a pipe) has no length: never read more than allowed.
     let mut bytes = Vec::new();

@@ -61,7 +61,7 @@ impl AllowedFolders {
         Self { open: open.clone(), ..self }
     }
 
-    /// The text of a file that the model may name, at most so many bytes of it: as it is edited, else as it is stored.
+    /// The text of a file that the model may name, of at most `most` bytes: as it is edited, else as it is stored.
     ///
     /// # Errors
     /// Where the file cannot be read.

@@ -156,7 +156,7 @@ fn definition_line(model: &Model, extents: &[super::names::Location], file: &Pat
     })
 }
 
-/// The formula at a byte: the smallest part of it of at least so many bytes that is more than a number, with its value.
+/// The formula at a byte: its smallest part of at least `least` bytes that is more than a number, with its value.
 fn formula(model: &Model, path: &Path, offset: usize, least: usize) -> Option<Hover> {
     let known = model.known.as_ref()?;
     let sources = &model.opened.reading.diagnostics.sources;

@@ -222,7 +222,7 @@ pub const RADIUS: &str = "radius";
 const LETTERS: [&str; 4] = ["u", "v", "w", "s"];
 
 impl Writer<'_> {
-    /// Names of the first so many parameters in [-1, 1].
+    /// Names of the first `count` parameters in [-1, 1].
     fn hidden(&self, count: usize) -> Vec<String> {
         LETTERS[..count].iter().map(|letter| format!("{}_{letter}", self.name)).collect()
     }

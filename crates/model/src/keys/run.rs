@@ -24,8 +24,7 @@ grammar! {
         formulation: Option<FormulationName>,
         /// By what the motion is integrated; by default `auto`.
         scheme: Option<SchemeName>,
-        /// So many step lengths, each half the one before, are combined to an order one higher than their number: 2, 3
-        /// or 4.
+        /// Number of step lengths, each half the one before, to combine for an order one higher: 2, 3 or 4.
         extrapolation: Option<u32>,
     }
 }

@@ -14,7 +14,7 @@ const SCHEMES: [(&str, SchemeChoice); 3] =
 /// Why an explicit scheme is not extrapolated.
 pub const NOT_OF_EXPLICIT: &str = "`extrapolation` is of HHT-I3, but the `scheme` is `explicit`";
 
-/// Why so many levels are not combined, if they are not. A fifth gains nothing that rounding leaves.
+/// Why this number of levels is refused, if it is. A fifth level gains nothing above rounding.
 pub fn refused_levels(levels: f64) -> Option<String> {
     let is_allowed = [2.0, 3.0, 4.0].contains(&levels);
     (!is_allowed).then(|| format!("`extrapolation` combines 2, 3 or 4 step lengths, not {levels}"))

@@ -125,7 +125,7 @@ fn allocated(allocation: &Allocation) -> Section {
     Section::Table("Tolerances at the optimum", headings, allocation.tolerances.iter().map(row).collect())
 }
 
-/// Deviations in a unit, of which one of SI is so many.
+/// Deviations in a unit; one SI unit is `scale` of these.
 fn deviations(zone: ToleranceZone, scale: f64, unit: &str) -> String {
     let [above, below] = [zone.above, zone.below].map(|side| rounded(significant(scale * side, 4)));
     let both = if above == below { format!("± {above}") } else { format!("+{above} -{below}") };

@@ -103,7 +103,7 @@ impl View {
         normal.dot(&towards) > 1e-9 * normal.norm()
     }
 
-    /// A length of 1, 2 or 5 times a power of ten that is about so many px long, m.
+    /// The largest length of 1, 2 or 5 times a power of ten that is at most `px` pixels, m.
     pub fn round_length(&self, px: f64) -> f64 {
         let wanted = px / self.scale;
         let mut power = 1.0;

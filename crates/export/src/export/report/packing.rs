@@ -8,7 +8,7 @@ pub(super) fn floats(values: &[f64]) -> String {
     BASE64.encode(&values.iter().flat_map(|&value| (value as f32).to_le_bytes()).collect::<Vec<u8>>())
 }
 
-/// Numbers as whole multiples, up to ±32767, of a scale that every so many of them have in common.
+/// Numbers as whole multiples, up to ±32767, of scales that repeat with a fixed period.
 #[derive(Serialize)]
 pub(super) struct Packed {
     /// Of the places that repeat.

@@ -94,7 +94,7 @@ fn exponent(value: f64) -> i32 {
     format!("{value:e}").split_once('e').and_then(|(_, exponent)| exponent.parse().ok()).unwrap_or(0)
 }
 
-/// With so many decimals; a rounded zero has no sign.
+/// A value with `decimals` decimals; a rounded zero has no sign.
 fn number(value: f64, decimals: usize) -> String {
     let number = format!("{value:.decimals$}");
     let zero = number.trim_start_matches('-').bytes().all(|digit| matches!(digit, b'0' | b'.'));

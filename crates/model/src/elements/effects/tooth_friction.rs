@@ -8,9 +8,9 @@
 //!
 //! R is that of `dry_friction`. Teeth that roll take their share from both rims: the one that drives gives (1 + c)|λ
 //! u|, the driven one gets (1 − c)|λ u|, c = (1 − η)/(1 + η), which is η of it whichever drives. The multiplier λ of
-//! the joint's constraint is what is transmitted, so Q depends on it. |λ| is √(λ² + ε²), ε = 10⁻⁶ N m or N. Teeth are
-//! where they are by the constraint: on a worm the force acts at the pitch point and on the bearings; that of teeth
-//! that roll acts along the rims alone.
+//! the joint's constraint is the transmitted torque or force, so Q depends on it. |λ| is √(λ² + ε²), ε = 10⁻⁶ N m or N.
+//! Teeth are where they are by the constraint: on a worm the force acts at the pitch point and on the bearings; that of
+//! teeth that roll acts along the rims alone.
 
 use mbint_derive::Element;
 use schemars::{Schema, SchemaGenerator, json_schema};

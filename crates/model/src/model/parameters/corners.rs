@@ -25,7 +25,7 @@ pub fn read(reader: &mut Reader, name_spans: &[Span]) {
         })
         .collect();
     let beyond = uncertain.get(TUNING.uncertain).map(|&(index, ..)| index);
-    // Too many are an error: nothing else has to be found at so many corners.
+    // Too many are an error: no other error has to be found at their corners.
     let choices = if beyond.is_some() { vec![Choice::new()] } else { choices(&uncertain) };
     let positions: HashMap<&str, usize> =
         parameters.iter().enumerate().map(|(index, parameter)| (parameter.name.as_str(), index)).collect();

@@ -234,7 +234,7 @@ impl<'i, 'd> Values<'i, 'd> {
         None
     }
 
-    /// The numbers of an attribute, finite, at least one and at most so many.
+    /// The finite numbers of an attribute, at least one and at most `most`.
     pub fn parsed(&mut self, attribute: &Attribute, most: usize) -> Option<Vec<f64>> {
         let mut numbers = Vec::new();
         for part in attribute.value.split_whitespace() {
@@ -255,7 +255,7 @@ impl<'i, 'd> Values<'i, 'd> {
         Some(numbers)
     }
 
-    /// An attribute of exactly so many numbers.
+    /// An attribute of exactly `N` numbers.
     pub fn exact<const N: usize>(&mut self, attribute: &Attribute) -> Option<[f64; N]> {
         let numbers = self.parsed(attribute, N)?;
         let count = numbers.len();

@@ -36,7 +36,7 @@ pub enum AttributeContent {
     Text,
     /// One of these.
     Word(&'static [&'static str]),
-    /// So many numbers.
+    /// This many numbers.
     Numbers(usize),
 }
 

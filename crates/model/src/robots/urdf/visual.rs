@@ -53,7 +53,7 @@ fn shape(geometry: Element) -> Option<VisualShape> {
     }
 }
 
-/// So many finite numbers of an attribute.
+/// The `N` finite numbers of an attribute.
 fn numbers<const N: usize>(element: Element, name: &str) -> Option<[f64; N]> {
     let numbers = plain(element, name)?.value().split_whitespace().map(|word| word.parse::<f64>().ok());
     let numbers: Vec<f64> = numbers.collect::<Option<_>>()?;
