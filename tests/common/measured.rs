@@ -57,8 +57,8 @@ impl Case {
         self.holds((order - theory).abs() <= 0.1, format!("{name}: {order:.3}, not {theory}"))
     }
 
-    /// So many of independent trials, which the report gives an interval of confidence. A limit of the share is for the
-    /// report to compare with that interval.
+    /// `count` of `of` independent trials, to which the report adds a confidence interval. A limit of the share is for
+    /// the report to compare with that interval.
     pub fn share(mut self, name: &str, count: usize, of: usize, high: Option<f64>) -> Self {
         self.figures.push(json!({ "name": name, "count": count, "of": of, "high": high }));
         self

@@ -96,7 +96,7 @@ pub fn refused(text: &str) -> String {
     study_of(text).run().expect_err("it cannot be run").to_string()
 }
 
-/// Runs what is asked for; nothing may fail.
+/// Runs all requested methods; none may fail.
 #[track_caller]
 pub fn run(subject: &Subject) -> Bounds {
     run_methods(subject, None).0

@@ -1,4 +1,4 @@
-//! Balance of power: the energy of a mechanism changes by what is put in, and by nothing else.
+//! Balance of power: the energy of a mechanism changes by the work put in, and by nothing else.
 
 use super::{curve, largest, nominal, order, read};
 
@@ -70,8 +70,8 @@ pub const APART_IN_SPACE: &str = "  b.x: 0.9\n  b.y: 0.5\n  b.z: -0.2\n  b.orien
 
 const RUN: &str = "outputs: { energy: energy }\nsimulation: { duration: 0.5, step: 1e-3, output_step: 1e-3 }\n";
 
-/// Asserts that kinetic energy and what is stored change by the work of `power`, a formula in W, to second order in the
-/// step, and that energy flows at all.
+/// Asserts that the sum of kinetic and stored energy changes by the work of `power`, a formula in W, to second order in
+/// the step, and that energy flows at all.
 #[track_caller]
 pub fn assert_balance(text: &str, power: &str) {
     // From here on the errors have faded that the start leaves in reactions.
@@ -97,6 +97,6 @@ pub fn assert_balance(text: &str, power: &str) {
     println!("{errors:?} of {exchanged} J");
     assert!(exchanged > 0.1, "only {exchanged} J flow");
     assert!(errors[1] < 1e-4 * exchanged, "{errors:?} of {exchanged} J");
-    // Below, rounding and Newton's tolerance are what is left.
+    // Below that, only rounding and Newton's tolerance remain.
     assert!(errors[1] < 1e-9 * exchanged || order(errors[0], errors[1]) > 1.7, "{errors:?} of {exchanged} J");
 }

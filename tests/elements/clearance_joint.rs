@@ -99,7 +99,7 @@ fn a_loose_pin_converges_with_the_step() {
     assert!(differences[2] < 0.5 * differences[0] && differences[2] < 2e-6, "{differences:?}");
 }
 
-/// The clearance is what is uncertain, in lockstep.
+/// The clearance is the uncertain parameter; the samples run in lockstep.
 #[test]
 fn the_clearance_may_be_uncertain() {
     let bounds = run(&loose(""));

@@ -52,7 +52,8 @@ fn an_elastic_ball_keeps_its_energy() {
     assert!((top(&runs[1], 0.6, 1.3) - 1.0).abs() < 1e-3);
 }
 
-/// An impact without weight, at 2 m/s: what is left of the speed depends on d = χ v alone, and converges to it.
+/// An impact without weight, at 2 m/s: the restitution depends on d = χ v alone, and the speed after the impact
+/// converges to it.
 #[test]
 fn an_impact_leaves_what_its_dissipation_says() {
     for (impact, d) in [

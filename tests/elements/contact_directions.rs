@@ -40,7 +40,8 @@ fn a_puck_turns_towards_the_smooth_direction() {
     assert!(off < 1e-6, "{off:e}");
 }
 
-/// With the same coefficient it is what it is without; an axis off the plane counts by what lies in it.
+/// With the same coefficient along both axes the friction is isotropic; an axis off the plane counts by its projection
+/// onto the plane.
 #[test]
 fn alike_directions_are_no_directions() {
     let plain = sliding(FRICTION, "plane: z");

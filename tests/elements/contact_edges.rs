@@ -186,7 +186,7 @@ simulation: {{ duration: 1, step: 2e-4, output_step: 0.1 }}
     assert!(last("tilt").abs() < 1e-4 && (last("x") - 0.02).abs() < 1e-4 && last("v").abs() < 1e-5);
 }
 
-/// Edges and corners that are deep in one another store what they take.
+/// Edges and corners that penetrate each other deeply store the energy that they take.
 #[test]
 fn elastic_edges_store_what_they_take() {
     for surface in [

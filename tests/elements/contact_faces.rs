@@ -7,7 +7,7 @@ const UPRIGHT: &str = "cylinder: [[0, 0, -0.25], [0, 0, 0.25]], radius: 0.1";
 const LYING: &str = "cylinder: [[0, -0.25, 0], [0, 0.25, 0]], radius: 0.1";
 const OF_CYLINDER: &str = "[0.0466666, 0.0466666, 0.01]";
 const OF_LYING: &str = "[0.0466666, 0.01, 0.0466666]";
-/// A slab of 1.2 × 0.8 × 0.4 m, 1 mm outside of what is drawn.
+/// A slab of 1.2 × 0.8 × 0.4 m, as a block with 1 mm of rounding on each side.
 const SLAB: &str = "block: [1.198, 0.798, 0.398], rounding: 1 mm";
 const SLAB_AS_HULL: &str = "hull: [[0.599, 0.399, 0.199], [0.599, 0.399, -0.199], [0.599, -0.399, 0.199], [0.599, -0.399, -0.199], \
      [-0.599, 0.399, 0.199], [-0.599, 0.399, -0.199], [-0.599, -0.399, 0.199], [-0.599, -0.399, -0.199]], rounding: 1 mm";
@@ -80,7 +80,7 @@ fn what_stands_over_an_edge_tips_beyond_its_middle() {
     }
 }
 
-/// A box on a face carries its weight on four corners, as on a plane; flush with what it stands on, on the corners of
+/// A box on a face carries its weight on four corners, as on a plane; flush with the block below, on the corners of
 /// both and on all edges that end there.
 #[test]
 fn a_box_stands_on_a_face() {
@@ -123,7 +123,7 @@ fn a_plank_lies_across_a_beam() {
     }
 }
 
-/// Three boxes on one another rest, and each carries what is above it.
+/// Three stacked boxes rest, and each carries the boxes above it.
 #[test]
 fn a_stack_rests() {
     let cube = "box: [0.3, 0.3, 0.2], radius: 1 mm";
@@ -218,7 +218,7 @@ simulation: {{ duration: 0.4, step: 2e-5, output_step: 0.01 }}
     }
 }
 
-/// Thrown askew at edges and corners, what is elastic keeps its energy over all of its bounces.
+/// Elastic bodies thrown askew at edges and corners keep their energy over all of their bounces.
 #[test]
 fn elastic_bodies_keep_their_energy() {
     for (shape, inertia) in [(UPRIGHT, OF_CYLINDER), ("box: [0.3, 0.2, 0.4], radius: 0.01", "[0.033, 0.042, 0.022]")] {
@@ -245,7 +245,7 @@ simulation: {{ duration: 2.5, step: 1e-4, output_step: 1e-3 }}
     }
 }
 
-/// Through rims, sides, edges and corners the force has no jumps: what it changes by in a step falls with the step.
+/// Through rims, sides, edges and corners the force has no jumps: its change over a step falls with the step.
 #[test]
 fn forces_are_continuous() {
     let starts = [

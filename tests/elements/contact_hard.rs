@@ -55,7 +55,7 @@ simulation: {{ duration: 0.7, step: 2e-5, output_step: 0.005 }}
     assert!((kept - housner).abs() < 0.01, "{kept}, not {housner}");
 }
 
-/// Three boxes on one another stay, and each carries what is above it.
+/// Three stacked boxes stay, and each carries the boxes above it.
 #[test]
 fn a_stack_stays_at_rest() {
     let law = "impact: { stiffness: 1e6, exponent: 1, dissipation: 20 }, friction: { coefficient: 0.5, transition_velocity: 1e-3 }";
@@ -82,7 +82,7 @@ simulation: {{ duration: 2, step: 1e-3, output_step: 0.05 }}
         let found = curve(&bounds, name)[last];
         assert!((found - 9.81 * mass).abs() < 1e-5 * found, "{name}: {found}");
     }
-    // It settles by what it presses in: F/2k at each corner of each floor.
+    // It settles by the penetrations: F/2k at each corner of each floor.
     let sunk = 9.81 / 2e6 * (6.0 + 5.0 + 3.0);
     assert!((curve(&bounds, "y")[last] - (0.25 - sunk)).abs() < 2e-6, "{}", curve(&bounds, "y")[last]);
     assert!((curve(&bounds, "x")[last] + 0.01).abs() < 1e-5 && curve(&bounds, "angle")[last].abs() < 1e-4);

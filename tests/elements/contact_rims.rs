@@ -3,7 +3,8 @@
 use crate::common::{curve, largest, nominal, read};
 use mbint::results::Bounds;
 
-/// A cylinder (or what it is said to be) of 2 kg, radius 0.1 m, on a floor that slopes along x, by its weight.
+/// A cylinder (or the body of another `shape`) of 2 kg, radius 0.1 m, on a floor; the direction of gravity stands for
+/// its slope along x.
 fn on_slope(slope: f64, shape: &str, inertia: &str, start: &str, duration: f64) -> Bounds {
     let (sin, cos) = slope.sin_cos();
     let (along, down) = (9.81 * sin, -9.81 * cos);

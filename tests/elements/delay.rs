@@ -1,10 +1,10 @@
-//! Delays against what they approximate.
+//! Delays against the delayed signals that they approximate.
 
 use mbint::results::{Bounds, Method};
 
 use crate::common::{band, curve, largest, nominal, output, read, run};
 
-/// Delays beside a mass that hangs still.
+/// Delays next to a mass that hangs still.
 fn text(effects: &str, states: &str, outputs: &str, simulation: &str) -> String {
     format!(
         "
@@ -131,7 +131,7 @@ fn by_old_values(time: f64) -> Vec<f64> {
     rows
 }
 
-/// A delay as short as a step has fast poles, which nothing excites: what is stated is what the steps do.
+/// A delay as short as a step has fast poles, which nothing excites: the stated error is the steps' error.
 #[test]
 fn errors_of_short_delays_are_those_of_the_steps() {
     let bounds = run(&read(

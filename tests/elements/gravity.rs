@@ -23,7 +23,7 @@ simulation: { duration: 2, step: 0.01, output_step: 0.1 }
     assert_exact(&bounds, "energy", |_| 0.5 * 0.3 * 25.0 + 0.5 * 0.01 * 25.0 + 0.3 * 9.81 * 2.0);
 }
 
-/// Of the kinetic energy it stores what it takes.
+/// Gravity stores the kinetic energy that it takes.
 #[test]
 fn weight_stores_what_it_takes() {
     assert_balance(&pair("", "", APART), "0");

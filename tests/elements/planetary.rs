@@ -42,8 +42,8 @@ fn run(members: &[&str]) -> Bounds {
 }
 
 /// With the ring held the carrier turns 1 + ρ times slower than the sun; with the carrier held the ring turns
-/// backwards; with the sun held the carrier turns with the ring. What is driven feels the other's inertia by the square
-/// of the ratio.
+/// backwards; with the sun held the carrier turns with the ring. The driven member feels the other's inertia by the
+/// square of the ratio.
 #[test]
 fn two_members_turn_in_a_ratio() {
     for (members, ratio) in [

@@ -101,7 +101,8 @@ fn deadbeat_control_brings_a_mass_to_rest_in_two_periods() {
     }
 }
 
-/// A number that refers to itself is the memory of a difference equation; others see what was held until then.
+/// A number that refers to itself is the memory of a difference equation; others see the value that was held until
+/// then.
 #[test]
 fn sampled_numbers_remember() {
     let effects = "
@@ -116,7 +117,7 @@ fn sampled_numbers_remember() {
         for (row, &t) in bounds.times.iter().enumerate() {
             let counted = |t: f64| (t / 0.02 + 1e-9).floor() + 1.0;
             assert_eq!(count[row], counted(t), "{simulation}: at {t}");
-            // Every second time: what was counted just before.
+            // `before` is sampled at every second count and holds the count just before it.
             let at = (t / 0.04 + 1e-9).floor() * 0.04;
             assert_eq!(before[row], counted(at) - 1.0, "{simulation}: at {t}");
             let instants = (t / PERIOD + 1e-9).floor() as usize;

@@ -24,8 +24,8 @@ simulation: { duration: 2, step: 1e-3, output_step: 0.01 }
     let omega = (k / m - decay * decay).sqrt();
     let stretch = |t: f64| x0 * (-decay * t).exp() * ((omega * t).cos() + decay / omega * (omega * t).sin());
     let speed = |t: f64| -x0 * (-decay * t).exp() * (omega + decay * decay / omega) * (omega * t).sin();
-    // What is left is of fourth order (third in velocities, whose start is of third): (ω h)⁴ of the amplitude, times ω
-    // t.
+    // The remaining error is of fourth order (third in velocities, whose start is of third): (ω h)⁴ of the amplitude,
+    // times ω t.
     assert_converges(&description, 1e-3, "stretch", 1e-8, stretch);
     assert_converges(&description, 1e-3, "speed", 1e-7, speed);
 }

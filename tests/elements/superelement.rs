@@ -11,7 +11,7 @@ use crate::common::{Subject, band, curve, distance, largest, load, nominal, outp
 const STEEL: Beam =
     Beam { length: 0.8, axial: 4e6, bending: [60.0, 90.0], torsional: 45.0, mass: 1.2, turning: 1e-4 };
 
-/// The matrices of a beam between its ends, with so many modes.
+/// The matrices of a beam between its ends, with `modes` modes.
 fn between_ends(beam: &Beam, modes: usize) -> String {
     let elements = 20;
     beam.of_elements(elements).reduced(&[0, elements], modes).yaml(&[[0.0; 3], [beam.length, 0.0, 0.0]], modes)

@@ -10,7 +10,7 @@ fn last(bounds: &Bounds, name: &str) -> f64 {
     *curve(bounds, name).last().unwrap()
 }
 
-/// Runs a model in both formulations and compares outputs at the end with what is expected, relative to 1 + |expected|.
+/// Runs a model in both formulations and compares outputs at the end with expected values, relative to 1 + |expected|.
 fn assert_loads(text: &str, expected: &[(&str, f64)], tolerance: f64) {
     for formulation in [Formulation::Absolute, Formulation::Joint] {
         let description = read(text).formulation(formulation);
@@ -185,7 +185,7 @@ simulation: { duration: 0.01, step: 1e-3, output_step: 0.01 }
     // Radii: sun 40, planet 20, ring 80 mm; 200 N at each mesh.
     let push = 200.0 / degrees(22.0).cos();
     let apart = 200.0 * degrees(22.0).tan();
-    // The ground is the ring: what it presses on the planet comes back through the carrier's bearing.
+    // The ground is the ring: its force on the planet comes back through the carrier's bearing.
     let expected = [("y", -400.0), ("x", 0.0), ("inner", push), ("outer", push), ("sx", apart)];
     assert_loads(text, &expected, 1e-8);
 }

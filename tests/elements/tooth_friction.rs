@@ -1,5 +1,5 @@
-//! Friction between teeth that roll: what is lost is a share of what is transmitted, whichever drives. (That of worms
-//! is in `worm`.)
+//! Friction between teeth that roll: the lost power is a share of the transmitted power, whichever gear drives. (That
+//! of worms is in `worm`.)
 
 use mbint::results::Bounds;
 
