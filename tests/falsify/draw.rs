@@ -38,7 +38,7 @@ pub struct Term {
     pub effects: Vec<String>,
     pub initial: Vec<String>,
     pub guess: Vec<String>,
-    /// What is observed: formulas.
+    /// Formulas of the observed quantities.
     pub channels: Vec<String>,
     /// Of the model's parameters, or of those that are `hidden` behind them.
     pub curves: Curves,
@@ -71,18 +71,18 @@ pub enum Combine {
     Product,
 }
 
-/// A function of what the channels make.
+/// A function of the combined channels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Wrap {
     Nothing,
     Abs,
     Square,
-    /// The larger of it and a constant.
+    /// The larger of the value and a constant.
     Above(f64),
     Below(f64),
-    /// Sine of so many times it.
+    /// Sine of this multiple of the value.
     Sine(f64),
-    /// How far it is from a constant.
+    /// Distance of the value from a constant.
     Distance(f64),
 }
 
@@ -96,7 +96,7 @@ pub struct Output {
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Stepping {
-    /// So many steps from one row to the next.
+    /// Number of steps from one row to the next.
     Steps(usize),
     Tolerance(f64),
 }

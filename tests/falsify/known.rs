@@ -1,4 +1,4 @@
-//! What is known to be missed of the gate's draws.
+//! Known misses of the gate's draws.
 
 /// Draws of the gate, and their seed.
 pub const DRAWS: u64 = 300;

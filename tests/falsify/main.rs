@@ -90,7 +90,7 @@ struct Findings {
     shown: BTreeMap<(&'static str, &'static str), usize>,
 }
 
-/// The draws of a seed with these numbers; of each family and method so many misses are simplified and shown.
+/// Runs the draws of a seed with these numbers; simplifies and shows at most `shown` misses of each family and method.
 fn falsify(seed: u64, numbers: Range<u64>, shown: usize) -> Table {
     let family: Option<String> = asked("MBINT_FALSIFY_FAMILY");
     let (begun, patience) = (Instant::now(), asked("MBINT_FALSIFY_SECONDS").unwrap_or(u64::MAX));
@@ -190,7 +190,7 @@ fn errors_of_a_few_draws_are_honest() {
     assert_eq!(table.failures(), 0);
 }
 
-/// The gate's draws, or as many as the environment asks for: no family is missed more often than is known.
+/// The gate's draws, or as many as the environment asks for: no family is missed more often than known.
 #[test]
 #[ignore = "minutes"]
 fn errors_are_honest() {
@@ -226,7 +226,7 @@ fn errors_are_honest() {
     assert_eq!(table.failures(), 0, "draws have no bands");
 }
 
-/// Draws of a question, and wrong answers, of which there may be so many.
+/// Notes the draws of a question and its wrong answers, of which at most `most` may occur.
 fn note(question: &str, draws: usize, wrong: &str, count: usize, most: usize) {
     let case = Case::new("questions", question).figure("draws", draws as f64).text("counted", wrong);
     case.at_most("wrong", count as f64, most as f64).note();

@@ -7,11 +7,11 @@ use mbint::results::Criterion;
 
 use crate::random::{Random, digits};
 
-/// What came of the draws of a question.
+/// Counts of the outcomes of a question's draws.
 #[derive(Default)]
 pub struct Tally {
     pub draws: usize,
-    /// The truth lies outside of what is stated.
+    /// The stated answer misses the truth.
     pub missed: usize,
     /// Nothing is stated.
     pub open: usize,
@@ -41,7 +41,7 @@ fn tail(z: f64) -> f64 {
     inner.sum::<f64>() * h / 3.0
 }
 
-/// The share of a sum of so many squares, an even number, above a limit: Poisson's distribution.
+/// The probability that a sum of squares of normal variables, even in number, exceeds a limit: Poisson's distribution.
 fn above(squares: usize, limit: f64) -> f64 {
     let half = 0.5 * limit;
     let mut term = 1.0;
@@ -242,8 +242,7 @@ bounds: {{ chebyshev: {{ order: 5 }} }}
     }
 }
 
-/// Of what is dearer than the cheapest by this share, less is not a fault: tolerances have four digits and margins
-/// errors.
+/// A cost above the cheapest by less than this share is no fault: tolerances have four digits, and margins have errors.
 const DEARER: f64 = 0.02;
 
 /// Allocations with worst cases inside of the box: numbers, that meet the requirement, as cheap as can be.

@@ -47,8 +47,8 @@ impl Random {
     }
 }
 
-/// The nearest number of so many significant digits.
+/// The nearest number of `digits` significant digits.
 pub fn digits(x: f64, digits: usize) -> f64 {
-    // What is written in this form is a number.
+    // Text of this form is a number.
     format!("{x:.*e}", digits - 1).parse().unwrap()
 }

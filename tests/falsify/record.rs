@@ -17,7 +17,7 @@ pub struct Record {
 }
 
 impl Record {
-    /// Opens a file to add to it, and adds what it has to a table.
+    /// Opens a file for appending, and adds its draws to a table.
     pub fn open(path: &Path, table: &mut Table) -> Self {
         let mut known = BTreeSet::new();
         for line in std::fs::read_to_string(path).unwrap_or_default().lines() {
@@ -45,7 +45,7 @@ impl Record {
 /// The last field of a whole line.
 const END: &str = "end";
 
-/// Number, family, what it came to, and for each band its label and its numbers, separated by tabs.
+/// Number, family, outcome, and for each band its label and its numbers, separated by tabs.
 fn write(number: u64, scored: &Scored) -> String {
     let mut fields = vec![number.to_string(), scored.family.clone()];
     match &scored.outcome {

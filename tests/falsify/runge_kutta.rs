@@ -155,7 +155,7 @@ fn towards(t: f64, h: f64, end: f64) -> (f64, bool) {
     (if is_last { end - t } else { h }, is_last)
 }
 
-/// Length of the step after one with this error over the tolerance, at most so many times as long.
+/// Length of the step after one with this error over the tolerance, at most `most` times as long.
 fn following(step: f64, error: f64, most: f64) -> f64 {
     step * (0.9 * error.powf(-0.125)).clamp(0.2, most)
 }

@@ -1,6 +1,6 @@
-//! The range of a term's channels over its box: a dense grid, and from its best points a local search. For closed forms
-//! the search evaluates them; for what is integrated it evaluates polynomials through the grid's points. Nothing here
-//! is mbint's.
+//! The range of a term's channels over its box: a dense grid, and from its best points a local search. The search
+//! evaluates closed forms directly, and integrated terms by polynomials through the grid's points. Nothing here is
+//! mbint's.
 
 use crate::draw::{Parameter, Term};
 use crate::random::Random;
@@ -82,9 +82,9 @@ fn matters(term: &Term, parameters: &[Parameter], which: usize, times: &[f64]) -
     parameters[which].half > 0.0 && (changes(&|_| 0.0) || at_corners())
 }
 
-/// From a point of a grid with so many points along each axis uphill, at most one cell away, by Rosenbrock's method
+/// Climbs from a point of a grid with `points` points along each axis, at most one cell away, by Rosenbrock's method
 /// (Computer Journal 3 (1960) 175): after each stage the first direction is that of its progress, since along a ridge
-/// that no axis follows the axes alone gain next to nothing. Returns the greatest value, and where it is.
+/// that no axis follows the axes alone gain next to nothing. Returns the greatest value and its position.
 fn climb(start: &[f64], points: usize, known: f64, f: &dyn Fn(&[f64]) -> f64) -> (f64, Vec<f64>) {
     let (n, last) = (start.len(), (points - 1) as f64);
     let (mut best, mut place, mut size) = (known, start.to_vec(), 0.25_f64);

@@ -13,7 +13,7 @@ const LEAST_COVERED: f64 = 99.0;
 /// In place of a family's or a method's name.
 const ALL: &str = "all";
 
-/// What of a verdict goes into the table.
+/// The part of a verdict that goes into the table.
 #[derive(Clone, Debug)]
 pub struct Score {
     /// Of the method.

@@ -48,7 +48,7 @@ pub struct Miss {
     pub found: Range,
     pub stated: f64,
     pub off: f64,
-    /// Whether the band leaves out what does occur; otherwise it has what does not.
+    /// Whether the band leaves out values that do occur; otherwise it contains values that do not.
     pub inside: bool,
 }
 

@@ -1,7 +1,7 @@
 //! Models and formulas as no one would write them: whatever stands in a file, the answer is a result or an error.
 //!
 //! `cargo test --test fuzz` changes the models of `models/` and `tests/bad_models/` at random;
-//! `MBINT_FUZZ_INPUTS=1000000` tries so many inputs, and `cargo test --test fuzz -- --ignored` as many as the gate
+//! `MBINT_FUZZ_INPUTS=1000000` tries a million inputs, and `cargo test --test fuzz -- --ignored` as many as the gate
 //! does. Guided by coverage, and with limits of time and memory, the same targets run with cargo-fuzz:
 //!
 //! ```sh

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use proptest::prelude::*;
 
-/// What is seldom written, and what readers stumble over.
+/// Text that is seldom written, and text that readers stumble over.
 const ODD: [&str; 46] = [
     "0",
     "-0",
@@ -98,7 +98,7 @@ const WORDS: [&str; 40] = [
     "x=",
 ];
 
-/// A change of a text. Numbers choose among what is there.
+/// A change of a text. Each number is taken modulo the count of the items that it selects from.
 #[derive(Clone, Debug)]
 pub enum Edit {
     /// Another word of the same file, of another, or an odd one, instead of one.
@@ -118,11 +118,11 @@ pub enum Edit {
         added: usize,
     },
     SwapLines(usize, usize),
-    /// What comes behind is cut off.
+    /// The text from here on is cut off.
     End(usize),
 }
 
-/// Which file, and what is changed in it.
+/// The index of a file, and the changes to it.
 pub fn edits() -> impl Strategy<Value = (usize, Vec<Edit>)> {
     let place = || 0..1_000_000_usize;
     let edit = prop_oneof![

@@ -1,20 +1,21 @@
-//! What is fuzzed. Each takes any text and may say of it what it likes, but not panic, hang or take much memory.
+//! Targets of the fuzzer. Each takes any text and may report anything about it, but must not panic, hang or take much
+//! memory.
 
 use mbint::inner::methods::{BoundsRequest, Chebyshev, Scan, Taylor};
 use mbint::inner::model::{self, Description, Override, Stepping};
 use mbint::inner::study::{self, Options};
 
-/// Reads a model, and renders what is wrong with it.
+/// Reads a model, and renders its diagnostics.
 pub fn model(text: &str) {
     report(&model::read_str("fuzz.yaml", text, &[]));
 }
 
-/// Reads a URDF by itself, and renders what is wrong with it.
+/// Reads a URDF by itself, and renders its diagnostics.
 pub fn robot(text: &str) {
     by_itself(text, "urdf");
 }
 
-/// Reads an MJCF by itself, and renders what is wrong with it.
+/// Reads an MJCF by itself, and renders its diagnostics.
 pub fn mjcf(text: &str) {
     by_itself(text, "xml");
 }

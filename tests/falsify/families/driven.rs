@@ -6,7 +6,7 @@ use super::{Scale, integrated, lines, named, parameter, removable};
 use crate::draw::Term;
 use crate::random::{Random, digits};
 
-/// Frequency of a force with so many periods in the duration, or some 30 steps each.
+/// Frequency of a force with 2 to 10 periods in the duration, and at least some 30 steps a period.
 fn driving(random: &mut Random, scale: &Scale) -> f64 {
     digits((random.scale(2.0, 10.0) * TAU / scale.duration).min(0.2 / scale.step), 4)
 }

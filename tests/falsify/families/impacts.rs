@@ -18,7 +18,7 @@ fn ball(index: usize) -> (Vec<String>, Vec<String>) {
 /// A mass that falls onto a stiff spring, and comes back.
 pub fn bounce(random: &mut Random, scale: &Scale) -> Term {
     let place = scale.place;
-    // So many falls fit in the duration.
+    // Number of falls that fit in the duration.
     let falls = random.between(0.7, 8.0);
     let gravity = random.pick(&[9.81, 1.62]);
     let height = crate::random::digits(0.5 * gravity * (scale.duration / falls).powi(2), 3);

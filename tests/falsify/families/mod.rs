@@ -1,4 +1,4 @@
-//! What is drawn: mechanisms whose motion is known without mbint.
+//! Families of draws: mechanisms whose motion is known without mbint.
 
 mod branches;
 mod driven;
@@ -173,7 +173,7 @@ fn make_uncertain(random: &mut Random, terms: &mut [Term], is_adaptive: bool) {
             let possible =
                 |parameter: &&mut Parameter| parameter.most > 0.0 && parameter.value != 0.0 && parameter.half == 0.0;
             let mut free: Vec<&mut Parameter> = term.parameters.iter_mut().filter(possible).collect();
-            // What is integrated is sampled on a grid.
+            // Integrated terms are sampled on a grid.
             let full = term.integrated && round >= 2;
             if free.is_empty() || full || (round > 0 && count >= wanted) || count >= limit {
                 continue;

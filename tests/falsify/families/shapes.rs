@@ -10,7 +10,7 @@ use crate::draw::{Parameter, Term};
 use crate::random::{Random, digits};
 use crate::truth::Range;
 
-/// What is made of uᵢ = (pᵢ − cᵢ)/wᵢ.
+/// A combination z of the uᵢ = (pᵢ − cᵢ)/wᵢ.
 #[derive(Clone, Copy)]
 enum Inner {
     Sum,
@@ -19,7 +19,7 @@ enum Inner {
     Product,
 }
 
-/// A function of that, with values from −1 to 1.
+/// A function of z, with values from −1 to 1.
 #[derive(Clone, Copy)]
 enum Outer {
     Itself,
@@ -117,7 +117,7 @@ fn slopes(random: &mut Random, boxes: &[Parameter], factor: fn(&mut Random, usiz
     boxes.iter().map(&mut slope).collect()
 }
 
-/// A free oscillator; a shape of so many parameters changes its stiffness or its start.
+/// A free oscillator; a shape of `count` parameters changes its stiffness or its start.
 fn oscillator(
     random: &mut Random,
     scale: &Scale,

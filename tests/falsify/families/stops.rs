@@ -126,7 +126,7 @@ pub fn clearance(random: &mut Random, scale: &Scale) -> Term {
     let place = scale.place;
     let clearance = digits(random.scale(1e-5, 1e-3), 2);
     let radius = digits(random.scale(2.0, 20.0) * clearance, 2);
-    // So many times across in the duration.
+    // Number of crossings in the duration.
     let crossings = random.between(0.6, 6.0);
     let speed = 2.0 * clearance * crossings / scale.duration;
     let direction = random.between(0.0, TAU);

@@ -32,7 +32,7 @@ pub fn pendulum(random: &mut Random, scale: &Scale) -> Term {
             let [m, l, gravity] = [p[4], p[0], p[3]];
             let (sin, cos) = y[0].sin_cos();
             let turning = -1.5 * gravity / l * cos;
-            // Acceleration of the centre, and what of it is not the weight's.
+            // Acceleration of the centre; the reaction is the mass times its difference from gravity.
             let ax = 0.5 * l * (-sin * turning - cos * y[1] * y[1]);
             let ay = 0.5 * l * (cos * turning - sin * y[1] * y[1]);
             [y[0], y[1], l * cos, l * sin, m * ax.hypot(ay + gravity)]
