@@ -2,7 +2,7 @@
 //! their range, and say where they end.
 //!
 //! The ordinary integration ends Newton's iteration at 1e-11 of a position; its samples are therefore allowed to lie
-//! outside by `NEWTON` times the size of what is observed, and no more.
+//! outside by `NEWTON` times the size of the output, and no more.
 
 use mbint::Study;
 use mbint::results::{Bounds, Method};
@@ -217,7 +217,7 @@ simulation: { duration: 0.02, step: 5e-4 }
     }
 }
 
-/// The shipped models that motors move. What is certified holds the samples, and where it ends it says why.
+/// The shipped models that motors move. Certified bands hold the samples, and where a band ends the run says why.
 #[test]
 #[ignore = "20 s: enclosures of four motions"]
 fn shipped_models_without_degrees_of_freedom_are_certified() {

@@ -36,7 +36,7 @@ pub fn excess(bounds: &Bounds, name: &str, samples: &[Vec<f64>]) -> f64 {
     worst
 }
 
-/// A band that holds so many solutions, and is hardly wider than they reach.
+/// Notes a band that holds `solutions` solutions, and is hardly wider than their range.
 #[track_caller]
 fn held(case: &str, solutions: usize, excess: f64, allowed: f64) {
     let case = Case::new("certified", case)

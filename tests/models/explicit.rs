@@ -1,5 +1,5 @@
-//! The explicit method of order 8: against references that other methods computed, closed forms, and what it is not
-//! for.
+//! The explicit method of order 8: against references that other methods computed and closed forms, and cases outside
+//! of its scope.
 
 use mbint::results::Method;
 use mbint::{RangeKind, SchemeChoice};
@@ -167,7 +167,7 @@ fn explain_says_by_what_a_model_is_integrated() {
     assert!(decisions(tolerance, "scheme: hht, ").is_empty(), "the model says it");
 }
 
-/// Within the error that is stated, and that within what is allowed.
+/// The output is off by no more than the stated error, and this error is below `allowed`.
 #[track_caller]
 fn assert_located(force: &str, start: &str, allowed: f64, exact: impl Fn(f64) -> f64) {
     let text = "

@@ -1,4 +1,5 @@
-//! Effects that act only sometimes: what they cost while they do not, and that nobody's numbers depend on who touches.
+//! Effects that act only sometimes: their cost while they do not act. No sample's numbers depend on which other samples
+//! touch.
 
 use std::fmt::Write as _;
 
@@ -61,7 +62,7 @@ fn a_far_contact_is_its_gap() {
     }
 }
 
-/// Numbers of samples, jets of parameters and closures alike: what is far changes nothing but the last digits.
+/// Numbers of samples, jets of parameters and closures alike: far contacts change nothing but the last digits.
 #[test]
 fn far_contacts_leave_every_method_as_it_was() {
     let [bare, far] = [0, 3].map(|count| run(&floors(count).duration(0.3)));

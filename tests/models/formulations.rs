@@ -244,7 +244,7 @@ simulation: {{ duration: 0.01, step: 1e-3, output_step: 1e-3, formulation: absol
     assert!(corrections[1] < 23 * corrections[0] / 10, "{corrections:?}");
 }
 
-/// What takes too long is given up; what does not is compiled as ever.
+/// A compilation beyond its limit is given up; one within its limit gives the usual program.
 #[test]
 fn a_program_is_given_up_beyond_its_limit_and_not_before() {
     let system =
@@ -259,8 +259,8 @@ fn a_program_is_given_up_beyond_its_limit_and_not_before() {
     assert_eq!(instructions(&free), instructions(&limited));
 }
 
-/// What the model leaves open of the start is nearest to rest in joint coordinates: the formulation, and what is
-/// observed, change nothing.
+/// Values of the start that the model leaves open are nearest to rest in joint coordinates: neither the formulation nor
+/// the outputs change them.
 #[test]
 fn the_start_depends_neither_on_the_formulation_nor_on_what_is_observed() {
     let planar = "

@@ -5,7 +5,8 @@ use mbint::results::Method;
 use super::through_events::{assert_within, integrated, range, thrown};
 use crate::common::{band, output, read, run_methods};
 
-/// A ball thrown up to a ceiling: gravity, height, speed, stiffness over mass; what is asked for, times and methods.
+/// A ball thrown up to a ceiling: gravity, height, speed, stiffness over mass; the duration, the output step and the
+/// methods.
 fn throw([g, height, speed, stiffness]: [&str; 4], duration: f64, output_step: f64, bounds: &str) -> String {
     format!(
         "

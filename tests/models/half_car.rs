@@ -14,7 +14,7 @@ fn the_half_car_does_not_roll_on_a_level_road() {
     assert!(curve(&bounds, "height").iter().any(|height| (height - 0.52).abs() > 1e-4), "it settles on its springs");
 }
 
-/// Corners of the box are the worst samples of what is monotonic: the samples are corners drawn at random, and points
+/// Corners of the box are the worst samples of monotonic outputs: the samples are corners drawn at random, and points
 /// inside. They are simulated in joint coordinates, with half of the model's steps.
 #[test]
 fn samples_of_the_half_car_lie_within_its_bounds() {

@@ -37,7 +37,7 @@ fn worst(description: &Subject, formulas: &[&str], h: f64) -> Vec<f64> {
 
 #[test]
 fn joints_stay_closed() {
-    // Newton ends at 1e-11 of the model's size; what is left of a correction is mostly far less.
+    // Newton ends at 1e-11 of the model's size; the remaining gap after a correction is mostly far smaller.
     let mut findings = Findings::default();
     for (name, gaps, _) in GAPS {
         for (gap, worst) in gaps.iter().zip(worst(&model(name).duration(1.0), gaps, 1e-3)) {

@@ -146,7 +146,7 @@ fn two_branches_near_one_another_are_not_mixed_up() {
 
 #[test]
 fn samples_that_lock_do_not_go_on_beyond_the_gap_on_another_branch() {
-    // Rods shorter than the crank lock before the slider reaches the pivot: what is left stays where x ≥ 0.
+    // Rods shorter than the crank lock before the slider reaches the pivot: the remaining samples stay where x ≥ 0.
     let text =
         near_a_change_point("interval: [0.093, 0.12]", "bounds: { chebyshev: { order: 6 }, scan: { points: 19 } }");
     let (bounds, _) = ran(study_of(&text).skip_infeasible());

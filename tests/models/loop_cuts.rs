@@ -65,7 +65,7 @@ fn no_cut_is_longer_than_that_of_the_shallowest_trees() {
     assert!(excavator.system.formulation.joint && instructions(&excavator) < 800);
 }
 
-/// What is bounded does not depend on the cut.
+/// Bounds do not depend on the cut.
 #[test]
 fn bounds_are_those_of_absolute_coordinates() {
     for name in ["excavator", "peaucellier"] {
@@ -125,7 +125,7 @@ fn loops_are_cut_where_friction_needs_the_reaction() {
     }
 }
 
-/// What is kept of a body's angle is not measured against the guess of its parent's.
+/// The start value of a body's angle is not measured against the guess of its parent's.
 #[test]
 fn angles_at_the_start_do_not_depend_on_guesses_of_others() {
     let text = rubbing("C").replace("crank.angle: 0.5, crank.angular_velocity: 6", "coupler.angle: 0.7");

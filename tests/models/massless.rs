@@ -3,7 +3,7 @@
 use crate::common::closed_forms::assert_converges;
 use crate::common::{curve, distance, distance_from, nominal, order, read, refused, study_of};
 
-/// Two springs in series are one of stiffness k₁k₂/(k₁ + k₂), and the node between them divides what they stretch.
+/// Two springs in series are one of stiffness k₁k₂/(k₁ + k₂), and the node between them divides their stretch.
 #[test]
 fn a_node_between_two_springs_divides_their_stretch() {
     let description = read(
@@ -21,7 +21,7 @@ simulation: { duration: 1, step: 1e-3, output_step: 0.01 }
     );
     let (m, stiffness, stretch, share): (f64, f64, f64, f64) = (2.0, 100.0, 0.06, 1.0 / 3.0);
     let omega = (stiffness / m).sqrt();
-    // What is left is of fourth order: (ω h)⁴ ω t of the amplitude, and rounding.
+    // The remaining error is of fourth order: (ω h)⁴ ω t of the amplitude, and rounding.
     assert_converges(&description, 1e-3, "block", 1e-9, |t| stretch * (omega * t).cos());
     assert_converges(&description, 1e-3, "node", 1e-9, |t| share * stretch * (omega * t).cos());
     assert_converges(&description, 1e-3, "speed", 1e-7, |t| -share * stretch * omega * (omega * t).sin());

@@ -69,7 +69,7 @@ fn of_oscillators_with_bands_full_of_turns() {
         let back = |lower: f64, upper: f64| (lower - 2000.0, upper - 2000.0);
         let moved =
             [apart((&known, "x"), (&far, "x"), back), apart((&known, "w"), (&far, "w"), |lower, upper| (lower, upper))];
-        // (What is rounded at 1 km, and thirty times that.)
+        // (The rounding errors at 1 km, and thirty times these.)
         assert!(moved[0][0] < 1e-8 && moved[1][0] < 1e-8, "{bounds}, 1 km away: {moved:?}");
 
         let swapped = [parts[1], parts[0]];

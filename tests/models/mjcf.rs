@@ -124,7 +124,7 @@ fn inertias_of_geoms_follow_the_mass() {
     assert!(distance(&angles("2"), &angles("7")) < 1e-9);
 }
 
-/// What a flag disables moves as what is not in the file.
+/// A model with elements that a flag disables moves as a model without these elements.
 #[test]
 fn flags_leave_out_what_they_disable() {
     let robot = |flags: &str, joint: &str, rest: &str| {

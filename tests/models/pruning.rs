@@ -1,5 +1,5 @@
-//! Only what is asked for is simulated: parts that no output needs change nothing, subsystems are models of their own,
-//! welded bodies are one.
+//! Only the requested outputs are simulated: parts that no output needs change nothing, subsystems are models of their
+//! own, welded bodies are one.
 
 use std::fmt::Write as _;
 
@@ -316,7 +316,7 @@ fn welded_bodies_are_one_where_nothing_asks_for_the_weld() {
     }
 }
 
-/// What is welded to the ground moves nothing and connects nothing.
+/// A body that is welded to the ground neither moves nor connects others.
 #[test]
 fn a_base_that_is_welded_to_the_ground_is_the_ground() {
     let text = |outputs: &str| {

@@ -121,7 +121,7 @@ fn a_question_of_two_parts_unites_them() {
     let margin = 2.4 - 0.1296 * (73.84_f64 / 1.7).sqrt() - 0.21 * (42.4_f64 / 1.1).sqrt();
     let both = sum.requirements.iter().find(|own| own.name == "both").unwrap();
     assert!((both.margin - margin).abs() < both.error + 1e-9, "{} {margin} {}", both.margin, both.error);
-    // What is of parameters alone unites nothing.
+    // A requirement on parameters alone does not unite parts.
     let stack = run_methods(&model(&[0, 1], ["", "stack: a1 + a2 <= 0.36 m", ""]), None).1;
     assert_eq!(stack.subsystems.len(), 2);
     let stack = stack.requirements.iter().find(|own| own.name == "stack").unwrap();
@@ -152,8 +152,8 @@ fn yields_of_parts_are_those_of_the_whole() {
     assert!(product < 0.99 && (together.share - product).abs() < 2e-3, "{} {product}", together.share);
 }
 
-/// The program of a step is the same with and without questions, and so are the bounds of what is observed; statistics
-/// of laws within their intervals take no simulation.
+/// The program of a step is the same with and without questions, and so are the bounds of the outputs; statistics of
+/// laws within their intervals take no simulation.
 #[test]
 fn who_does_not_ask_does_not_pay() {
     let text = |more: &str, asked: &str| {

@@ -331,7 +331,7 @@ requirements: { far: most <= twice }
 simulation: { duration: 0.1, step: 0.01, output_step: 0.01 }
 bounds: { taylor: { order: 2 } }
 ";
-    // Taylor bounds are of the rows; what is one number a motion has others.
+    // Taylor bounds are of the rows; a reduced output has bounds of other methods.
     let summary = summary(&read(text));
     let far = &summary.requirements[0];
     assert_eq!(far.verdict, Verdict::Holds, "{far:?}");
@@ -404,7 +404,7 @@ fn the_pages_slider_crank_is_that_of_its_closed_forms() {
     }
 }
 
-/// What is conserved does not move, and a band without width has no error that is small beside it: its limits are met
+/// A conserved output does not move, and no error is small compared with a band without width: its limits are decided
 /// by margin and error, in the first round.
 #[test]
 fn what_is_conserved_is_decided_at_once() {

@@ -66,7 +66,7 @@ fn the_scheme_is_of_second_order_through_events() {
     }
 }
 
-/// What is fastened by 1e8 N/m is one body but for 1e-7 m: of the closed form's ball with 1.01 of its mass.
+/// Bodies fastened by 1e8 N/m move as one body but for 1e-7 m: as the closed form's ball with 1.01 of its mass.
 #[test]
 fn a_stiff_body_bounces_as_a_rigid_one() {
     let request = "bounds: { chebyshev: { order: 4 }, taylor: { order: 4 } }";

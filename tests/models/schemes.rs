@@ -1,4 +1,5 @@
-//! The schemes beside HHT: their order, what they leave of high frequencies, and what index 2 does to the constraints.
+//! The schemes other than HHT: their order, their damping of high frequencies, and the effect of index 2 on the
+//! constraints.
 
 use mbint::inner::assemble;
 use mbint::inner::compile::Scheme;
@@ -55,14 +56,14 @@ fn nominal(description: &Subject, scheme: Scheme, h: f64) -> Vec<Vec<f64>> {
     courses(&simulator, &schedule, sample)
 }
 
-/// Errors at h, at h/2, and of what they extrapolate to, against (row, output, exact value).
+/// Errors at h, at h/2, and of the extrapolation from both, against (row, output, exact value).
 fn errors(description: &Subject, scheme: Scheme, h: f64, exact: &[(usize, usize, f64)]) -> [f64; 3] {
     let [coarse, fine] = [h, 0.5 * h].map(|h| nominal(description, scheme, h));
     let limit: Vec<Vec<f64>> = coarse.iter().zip(&fine).map(|(coarse, fine)| richardson(coarse, fine)).collect();
     [coarse, fine, limit].map(|courses| largest(exact.iter().map(|&(row, output, value)| courses[output][row] - value)))
 }
 
-/// The two first outputs of a reference's rows that are so many seconds apart, with the number of the row and of the
+/// The first two outputs of a reference's rows that are `interval` seconds apart, with the index of the row and of the
 /// output.
 fn every(interval: f64, reference: &[Vec<f64>]) -> Vec<(usize, usize, f64)> {
     let row = |line: &Vec<f64>| {
@@ -148,7 +149,7 @@ fn a_step_leaves_of_the_highest_frequencies_what_the_scheme_says() {
         let expected = scheme.spectral_radius();
         println!("{scheme:?}: {highest} of {expected}");
         assert!((highest - expected).abs() < 6e-4, "{scheme:?}: {highest}, not {expected}");
-        // ωh = 0.01: damping of third order or less; what is stable in between stays below one.
+        // ωh = 0.01: damping of third order or less; the spectral radius in between stays below one.
         let lowest = radius(amplification(scheme, 1e-5));
         assert!((lowest - 1.0).abs() < 1e-5, "{scheme:?}: {lowest}");
         for h in [1e-4, 1e-3, 3e-3, 1e-2, 0.1, 1.0] {

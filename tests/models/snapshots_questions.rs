@@ -10,7 +10,7 @@ use mbint::results::Summary;
 
 use crate::common::{load_all, run_methods};
 
-/// What is smaller is rounding.
+/// Smaller values are rounding.
 const ROUNDING: f64 = 1e-9;
 
 /// Six digits.

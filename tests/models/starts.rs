@@ -1,5 +1,6 @@
-//! Starts that name what is no coordinate of the equations: points, bodies in joint coordinates, parts of angular
-//! velocities; and values that depend on t where they are prescribed. All against trigonometry or another method.
+//! Starts that name quantities other than coordinates of the equations: points, bodies in joint coordinates, parts of
+//! angular velocities; and values that depend on t where they are prescribed. All against trigonometry or another
+//! method.
 
 use crate::common::dormand_prince::dormand_prince;
 use crate::common::{curve, distance, distance_from, largest, nominal, order, ran, read, refused, study_of};

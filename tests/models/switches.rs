@@ -75,7 +75,7 @@ fn no_sample_of_a_bouncing_ball_gains_energy() {
 }
 
 /// A brake that holds one sample of the scan, and none of those that decide the steps: at rest its force jumps in every
-/// step, so that the tolerance takes more steps than a sample may have. What is true there is known; what is stated is
+/// step, so that the tolerance takes more steps than a sample may have. The truth there is known; the stated bounds are
 /// flagged.
 #[test]
 fn a_sample_beyond_the_tolerance_flags_what_follows() {
@@ -239,7 +239,7 @@ bounds: { chebyshev: { order: 4 } }
     assert!(found.is_some_and(|from| (0.8..=0.95).contains(&from)), "{found:?}");
 }
 
-/// The search's simulations are reported, and from when on what it found matters.
+/// The search's simulations are reported, and the time from which on its findings matter.
 #[test]
 fn the_summary_has_the_search_for_switches() {
     let settings = "simulation: { duration: 0.8, step: 2e-4, output_step: 0.02 }\nbounds: { chebyshev: { order: 5 } }";
@@ -280,7 +280,7 @@ bounds: {{ chebyshev: {{ order: 2 }} }}
     assert_eq!(flagged_from(&run(&read(&text(9.0)))), None);
 }
 
-/// A spring with a stop inside steps: wherever in a step the switch lies, the error covers what it does.
+/// A spring with a stop inside steps: wherever in a step the switch lies, the error covers its effect.
 #[test]
 fn a_switch_inside_fixed_steps_is_in_the_error() {
     // Half of a swing to one side with k, of the other with K.

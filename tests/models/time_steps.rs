@@ -111,7 +111,7 @@ bounds: {{ scan: {{ points: 61 }} }}
     };
     let mut findings = Findings::default();
     println!("{} steps", steps(&summary));
-    // What is between a scan's points is most of its error here, so that only the coverage tells of the steps.
+    // The range between a scan's points is most of its error here, so that only the coverage shows the steps' part.
     check(&mut findings, &bounds, "x", f64::INFINITY, exact);
     findings.none();
 }

@@ -56,7 +56,7 @@ fn what_turns_takes_few_simulations() {
         assert!(*error <= 1e-5 * 0.303 && !band.error.unresolved[row], "{row}: {error}");
         let contains = band.lower[row] - error <= inside.lower[row] && inside.upper[row] <= band.upper[row] + error;
         assert!(contains, "{row}: {} {}, {error}", inside.lower[row], inside.upper[row]);
-        // A scan of 13 misses an end by less than what it says.
+        // A scan of 13 points misses an end by less than its stated error.
         let apart = (band.lower[row] - inside.lower[row]).abs().max((band.upper[row] - inside.upper[row]).abs());
         let said = error + inside.error.total[row];
         assert!(inside.error.unresolved[row] || apart <= said, "{row}: {apart}, {}", inside.error.total[row]);

@@ -334,8 +334,8 @@ fn friction_is_there_only_where_the_file_has_it() {
     let effects = study.description().effects.iter();
     let names: Vec<(&str, &str)> = effects.map(|own| (own.name.as_str(), own.kind.keyword())).collect();
     assert_eq!(names, [("hinge.friction", "joint_friction")]);
-    // ω̇ = −(f/J) ω/s, s = √(ω² + v₀²): s − v₀ log((v₀ + s)/ω) falls by f/J a second. What is left is the scheme's own
-    // error of a spin, of second order.
+    // ω̇ = −(f/J) ω/s, s = √(ω² + v₀²): s − v₀ log((v₀ + s)/ω) falls by f/J a second. The remaining error is the
+    // scheme's own of a spin, of second order.
     let of_speed = |omega: f64| {
         let slow = 0.05;
         let s = omega.hypot(slow);

@@ -93,7 +93,8 @@ bounds: { tolerance: 1e-8 }
     }
 }
 
-/// Deviations of uniform and of radial normal laws: a quarter and a fifth of R², and σ² = R²/9 less what is cut off.
+/// Deviations of uniform and of radial normal laws: a quarter and a fifth of R², and σ² = R²/9 less the part of the
+/// tails.
 #[test]
 fn laws_in_zones_have_their_moments() {
     let deviation = |kind: &str, law: &str| {

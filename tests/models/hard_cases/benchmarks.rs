@@ -8,7 +8,7 @@ use mbint::results::Bounds;
 use crate::common::measured::Case;
 use crate::common::{Findings, Subject, curve, largest, model, nominal, order, read, reference, row, run_methods};
 
-/// A benchmark with what is known of its solution.
+/// A benchmark with the known values of its solution.
 struct Benchmark {
     name: &'static str,
     description: Subject,
@@ -73,7 +73,7 @@ fn pendulum() -> Benchmark {
     Benchmark::new("pendulum", model("pendulum"), &["bob.x", "bob.y"], &solution)
 }
 
-/// So many four-bar linkages side by side.
+/// `count` four-bar linkages side by side.
 fn loops(count: usize) -> String {
     let list = |what: &dyn Fn(usize) -> String, range: std::ops::Range<usize>| range.map(what).collect::<String>();
     let bar = |i| format!("  bar{i}: {{ mass: 1, inertia: 1/12, points: {{ foot: [-0.5, 0], end: [0.5, 0] }} }}\n");

@@ -20,7 +20,7 @@ fn errors_of_steps(description: &Subject, name: &str, truth: &[f64], steps: &[f6
     errors
 }
 
-/// The same for some tolerances, each below so many times the tolerance and the last below the first.
+/// The same for some tolerances: each error is below `times` times the tolerance, and the last is below the first.
 fn errors_within(description: &Subject, name: &str, truth: &[f64], tolerances: &[f64], times: f64) {
     let mut errors = Vec::new();
     for &tolerance in tolerances {

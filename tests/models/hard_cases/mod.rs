@@ -1,7 +1,7 @@
-//! Cases on which solvers of multibody dynamics fail or lose accuracy: `docs/guides/hard-cases.md` tells what is hard
-//! about each, and shows the numbers that these tests print.
+//! Cases on which solvers of multibody dynamics fail or lose accuracy: `docs/guides/hard-cases.md` explains the
+//! difficulty of each, and shows the numbers that these tests print.
 //!
-//! What takes more than a few seconds is ignored, with what it takes, and has a smaller version beside it.
+//! Tests of more than a few seconds are ignored, with a note of their time, and have smaller versions next to them.
 
 mod benchmarks;
 mod effects;

@@ -12,13 +12,13 @@ use crate::common::runge_kutta::runge_kutta;
 use crate::common::{curve, distance, largest, model, nominal, order, read, row};
 
 /// A pendulum's angle from the horizontal, and its rate, at t: θ̈ = −(g/L) cos θ, by Runge and Kutta's fourth-order
-/// method with so many steps.
+/// method with `steps` steps.
 fn swing(gravity_by_length: f64, t: f64, steps: usize) -> [f64; 2] {
     let slope = |[angle, rate]: [f64; 2]| [rate, -gravity_by_length * angle.cos()];
     runge_kutta(slope, [0.0, 0.0], t, 2, steps)[1]
 }
 
-/// Errors of position and velocity of the pendulum after at most so many steps, and after how long.
+/// The time of at most `steps` steps, and the errors of position and velocity of the pendulum then.
 fn small_steps(h: f64, steps: f64) -> (f64, [f64; 2]) {
     let duration = (steps * h).min(1.0);
     let description = model("pendulum").observing(&["bob.x", "bob.y", "bob.vx", "bob.vy"]);
@@ -208,7 +208,7 @@ fn masses_of_any_ratio_move_together() {
     }
 }
 
-/// A driven slider crank, all lengths times `size` and times `unit` in what is written.
+/// A driven slider crank, with all lengths times `size`, written in `unit`.
 fn crank_of_size(size: f64, unit: &str) -> String {
     let units = [("mm", 1e3), ("m", 1.0), ("km", 1e-3)];
     let per_metre = units.iter().find(|(name, _)| *name == unit).unwrap().1;

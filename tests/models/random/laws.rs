@@ -54,7 +54,7 @@ fn is_of_second_order(coarse: f64, fine: f64, rounding: f64) -> bool {
     fine <= 0.4 * coarse + rounding
 }
 
-/// Power of what is not conservative: motors and drag, dampers.
+/// Power of the non-conservative forces: motors and drag, dampers.
 fn power(mechanism: &Mechanism) -> String {
     let spatial = mechanism.kind.spatial;
     let omega = if spatial { "omega.z" } else { "angular_velocity" };

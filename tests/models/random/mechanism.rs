@@ -4,7 +4,7 @@ use proptest::prelude::*;
 
 use super::quaternion::{Quaternion, Vector, add, cross, sub};
 
-/// What is drawn at random. Which laws hold for it depends on what is left out.
+/// Properties that are drawn at random. The laws that hold for a mechanism depend on the properties that it lacks.
 #[derive(Clone, Copy, Debug)]
 pub struct Kind {
     pub spatial: bool,

@@ -144,7 +144,7 @@ impl Scene {
         ROW
     }
 
-    /// What is given at the start, or where it is looked for.
+    /// The given values of the start, or the guesses for it.
     fn start(&self, mechanism: &Mechanism, guessed: bool) -> Vec<String> {
         let spatial = mechanism.kind.spatial;
         let mut lines = Vec::new();
