@@ -1,4 +1,4 @@
-//! `mbint allocate` against closed forms, brute force and runs of what it found.
+//! `mbint allocate` against closed forms, brute force and runs with the tolerances that it found.
 
 use std::fs;
 use std::sync::atomic::{AtomicUsize, Ordering};

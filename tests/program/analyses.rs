@@ -15,8 +15,8 @@ fn table() -> Vec<Vec<String>> {
     table.lines().skip(2).map(cells).collect()
 }
 
-/// An oscillator of k/m = 400 1/s² on a driven carriage: what is asked beside, and the names of an output and of what
-/// is limited.
+/// An oscillator of k/m = 400 1/s² on a driven carriage: further keys and the body of the model, the name of an output,
+/// and a limit.
 struct Analysis {
     keys: &'static str,
     body: &'static str,

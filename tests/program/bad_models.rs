@@ -1,10 +1,11 @@
-//! Every file in `tests/bad_models` says at its top what is wrong with it: `# error[E0401]: 13:13 unknown body `crnk``,
-//! each perhaps with `# help: …`, in a URDF or MJCF `<!-- error[…]: … -->`. Code, message and place must all be found,
+//! Every file in `tests/bad_models` lists its diagnostics at the top: `# error[E0401]: 13:13 unknown body `crnk``, each
+//! perhaps with `# help: …`, in a URDF or MJCF `<!-- error[…]: … -->`. Code, message and position must all be found,
 //! and nothing else.
 //!
 //! `{effects}` stands for the list of all effects, which grows.
 //!
-//! `MBINT_UPDATE=1 cargo test --test program bad_models` writes what is found; then read the difference.
+//! `MBINT_UPDATE=1 cargo test --test program bad_models` writes the diagnostics that are found; then read the
+//! difference.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -147,7 +148,7 @@ fn very_long_lines_are_cut() {
     assert!(rendered.contains(&format!("x.yaml:1:{}", place.unwrap().column.unwrap())), "{rendered}");
 }
 
-/// What is wrong with a text.
+/// The diagnostics of a text with errors.
 #[track_caller]
 fn wrong(name: &str, text: &str) -> Diagnostics {
     wrong_of(Model::from_yaml_str(name, text))
@@ -277,7 +278,7 @@ fn overrides_are_reported_where_they_stand() {
     }
 }
 
-/// What is spoilt: a model of the plane, a text with everything that there is in space, or one of scenes.
+/// Sound texts to be spoilt: a model of the plane, one with all elements of space, or one of scenes.
 fn sound(which: usize) -> String {
     let file = ["models/slider_crank.yaml", "tests/bad_models/space.yaml", "models/door.yaml"][which];
     fs::read_to_string(root().join(file)).unwrap()

@@ -1,4 +1,4 @@
-//! The command as a user meets it: what it prints, what it writes, and its exit status.
+//! The command as a user meets it: its output, its files, and its exit status.
 
 use std::fs;
 use std::process::Stdio;

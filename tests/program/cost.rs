@@ -97,7 +97,7 @@ fn errors_fall_as_they_must_and_have_the_right_sign() {
     // The paper's Σ|c| is too wide by a third of the band, however high the order, and leaves nothing out.
     let [wide, narrow] = sides("chebyshev.interval", "8");
     assert!((wide - 0.36).abs() < 0.02 && narrow < 1e-3, "{wide}, {narrow}");
-    // A scan leaves out what is between its points and the validation samples, which its band holds too, and is never
+    // A scan leaves out values between its points and the validation samples, which its band holds too, and is never
     // too wide; denser ones leave out less.
     let scans = ["5", "10", "30"].map(|points| sides("scan", points));
     assert!(scans.iter().all(|[wide, narrow]| *wide < 1e-4 && narrow > wide), "{scans:?}");
@@ -205,7 +205,7 @@ fn a_study_keeps_its_budget() {
     assert!(study.has_reference() || study.bounds.is_empty());
 }
 
-/// Interrupted half way, a study keeps what was measured, and whole runs only.
+/// Interrupted half way, a study keeps its measurements, of whole runs only.
 #[test]
 fn what_is_measured_before_an_interruption_is_kept() {
     let model = Model::from_yaml_str("oscillator", OSCILLATOR).unwrap();

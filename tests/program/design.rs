@@ -1,4 +1,4 @@
-//! `mbint design`: its files, and what it says where no values meet the requirements.
+//! `mbint design`: its files, and its message where no values meet the requirements.
 
 use std::fs;
 

@@ -125,7 +125,7 @@ fn what_older_scenes_left_goes() {
     let all = ["one", "report.html", "scenes.csv", "scenes.json", "three", "two", "x.svg", "y.svg"];
     assert_eq!(place.files("results/slides"), all);
     fs::write(place.path().join("results/slides/two/mine.txt"), "").unwrap();
-    // Only one of them has x now, and two are no more: what is not of their runs stays.
+    // Only one of them has x now, and two are gone: files that their runs did not write stay.
     model("scenes: { one: {}, other: { without: [x] } }\n");
     run();
     assert_eq!(

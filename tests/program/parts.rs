@@ -1,4 +1,4 @@
-//! Assemblies, instances and repetition: they are what is written out by hand, to the byte.
+//! Assemblies, instances and repetition: their models are those written out by hand, to the byte.
 
 use std::fs;
 use std::path::Path;

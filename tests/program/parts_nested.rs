@@ -605,7 +605,7 @@ outputs: {{ x1: one.rim.x, y1: one.rim.y, x2: two.rim.y - 1, y2: 1 - two.rim.x }
             let start = if name == "x" { 0.7 } else { 0.1 };
             assert!((one[0] - start).abs() < 1e-9, "{name}: {}", one[0]);
             for (one, two) in one.iter().zip(two) {
-                // What is given of points holds at the start up to what the steps miss.
+                // Given values of points hold at the start; the courses agree up to the steps' errors.
                 assert!((one - sign * two).abs() < 1e-6, "{name}: {one} and {two}");
             }
         }

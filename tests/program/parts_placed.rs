@@ -304,7 +304,7 @@ outputs: {{ {}, {} }}
 }
 
 /// Drives that follow targets by their rates, through rate limits and in a computer's time, and a wheel on the other
-/// side of its rail. What formulas of an instance refer to is what it is in the instance.
+/// side of its rail. Formulas of an instance refer to quantities in the frame of the instance.
 #[test]
 fn the_image_of_a_controller_and_of_a_wheel() {
     let cart = "
@@ -443,7 +443,7 @@ outputs:
     );
     let found = bounds(&text);
     for (other, sign) in [("d2", 1.0), ("d3", -1.0), ("d4", -1.0)] {
-        // The joint's angle is counted from −π to π at the start: compare what it turns by.
+        // The joint's angle is counted from −π to π at the start: compare its change.
         let (first, second) = (courses(&found, "d1"), courses(&found, other));
         for (value, image) in first[0].iter().zip(&second[0]) {
             let [turned, image] = [value - first[0][0], sign * (image - second[0][0])];

@@ -47,7 +47,7 @@ impl Place {
         fs::write(path, short).unwrap();
     }
 
-    /// Names of what is in a folder, but for the list of what is mbint's.
+    /// Names of the entries of a folder, but for mbint's list of its own files.
     pub fn files(&self, folder: &str) -> Vec<String> {
         let entries = fs::read_dir(self.path().join(folder)).unwrap();
         let mut names: Vec<_> = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();

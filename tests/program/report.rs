@@ -1,4 +1,4 @@
-//! `report.html`: what is written, and that it can be made again.
+//! `report.html`: its content, and that it can be made again.
 
 use std::fs;
 

@@ -193,8 +193,8 @@ fn files_form_no_circles() {
     assert!(found.is_empty(), "{found:#?}");
 }
 
-/// Crates in which a type has all its methods in its own file: what a file uses is what it imports, so that the circles
-/// above are all there are.
+/// Crates in which a type has all its methods in its own file: a file uses nothing but its imports, so that the circles
+/// above are complete.
 const UNTIED: [&str; 3] = ["crates/study/src", "crates/export/src", "src"];
 
 /// Types with inherent methods in a file that does not declare them.

@@ -1,4 +1,4 @@
-//! Scenes: what they mean, that each is compiled for itself, and how the command runs them.
+//! Scenes: their meaning, that each is compiled for itself, and how the command runs them.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -515,7 +515,7 @@ scenes:
     assert_eq!(effects("undamped"), "weight hinge.friction hinge.limit");
     assert_eq!(effects("free"), "weight");
     assert_eq!(effects("rubbing"), "weight hinge.friction");
-    // What acts only in what is left out is not varied.
+    // Parameters that act only in omitted elements are not varied.
     let uncertain = |scene: &str| explained(&place, &format!("robot.yaml --scene {scene}"))["parameters"].clone();
     assert_eq!(uncertain("as_it_is"), serde_json::json!(["link.arm.mass", "joint.hinge.damping"]));
     assert_eq!(uncertain("undamped"), serde_json::json!(["link.arm.mass", "joint.hinge.limit.upper"]));

@@ -1,7 +1,7 @@
 //! The committed JSON Schema is that of the grammar, and the models keep to it.
 //!
 //! `MBINT_UPDATE_SCHEMA=1 cargo test --test program schema` writes it, and `tests/program/only_semantics.txt`: the bad
-//! models of which the schema cannot see what is wrong.
+//! models whose errors the schema cannot see.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -50,7 +50,7 @@ fn the_models_keep_to_the_schema_and_name_it() {
     }
 }
 
-/// What the reader accepts, the schema accepts: what is no model of the shipped folder, too.
+/// The schema accepts all that the reader accepts, texts outside of the shipped folder included.
 #[test]
 fn the_schema_accepts_what_can_be_read() {
     let validator = validator();

@@ -87,7 +87,7 @@ fn merged_shards_are_the_run() {
     assert!(finish(&place, "study", 0) > 1);
     assert_eq!(tree(&place.path().join("direct")), tree(&place.path().join("study-results")));
 
-    // What is short is simulated when planning and merging.
+    // Short parts are simulated when planning and merging.
     place.run("plan pendulum.yaml -o small", 0);
     assert_eq!(shards(&place, "small"), 0);
     assert_eq!(finish(&place, "small", 0), 1);
@@ -115,7 +115,7 @@ fn what_is_missing_is_reported() {
     let (_, errors) = place.run("report other", 2);
     assert!(errors.contains("the folder other has no summary.json, so there are no results to show"), "{errors}");
 
-    // The model is not what it was.
+    // The model has changed.
     fs::write(place.path().join("pendulum.yaml"), PENDULUM.replace("value: 1,", "value: 1.1,")).unwrap();
     let (_, errors) = place.run("shard study --index 0", 1);
     assert!(errors.contains("the model is not what it was when the study was planned; plan it again"), "{errors}");
@@ -335,7 +335,7 @@ fn a_killed_run_leaves_nothing_behind_the_next_one() {
         std::thread::sleep(std::time::Duration::from_millis(10));
     }
     assert_eq!(left_over(), 1);
-    // What is being written stays.
+    // A file that is being written stays.
     place.run("run pendulum.yaml --scene short -o first -q --store kept", 0);
     assert_eq!(left_over(), 1);
     killed.kill().unwrap();

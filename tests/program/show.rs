@@ -91,7 +91,7 @@ fn bodies_are_where_geometry_puts_them() {
     let row = text.lines().find(|line| line.trim_start().starts_with("block ")).unwrap();
     assert_eq!(row.split_whitespace().nth(1), Some("0.400000"), "{text}");
     assert!(text.trim_end().ends_with("mechanism.svg"), "{text}");
-    // What is set is shown: a crank of 0.4 m leaves 0.3 m to the block.
+    // Values of `--set` are shown: a crank of 0.4 m leaves 0.3 m to the block.
     let (json, _) = place.run("show press.yaml --set crank=0.4 --format json -o out", 0);
     let drawing: Value = serde_json::from_str(&json).unwrap();
     assert_near(&named(&drawing["bodies"], "block")["position"], &[0.3, 0.0, 0.0]);

@@ -1,4 +1,4 @@
-//! `mbint snapshot`: what is recorded beside a model, and what is reported when it moves.
+//! `mbint snapshot`: records next to a model, and reports of bounds that moved.
 
 use std::fs;
 
@@ -67,7 +67,7 @@ fn a_snapshot_is_beside_its_model_and_tells_what_moved() {
     );
     assert_eq!(fs::read_to_string(place.path().join("parts/fall.snap")).unwrap(), text, "a check writes nothing");
 
-    // What is no snapshot is no bound that moved.
+    // A file that is no snapshot is not reported as a bound that moved.
     fs::write(place.path().join("parts/fall.snap"), "<<<<<<< HEAD\n").unwrap();
     let (_, errors) = place.run("snapshot --check parts/fall.yaml", 2);
     assert!(errors.contains("parts/fall.snap: line 2: no headings"), "{errors}");

@@ -1,4 +1,4 @@
-//! The example of the guide to statistics is run, and what it says is there.
+//! The example of the guide to statistics is run, and its statistics are checked.
 
 use std::fs;
 use std::path::Path;
@@ -187,7 +187,8 @@ fn a_stack_has_worst_case_root_sum_square_and_statistics_side_by_side() {
     }
 }
 
-/// The peak v²/2g of what is thrown up, v normal: its quantiles are those of v, squared, and the mean is (v² + σ²)/2g.
+/// The peak v²/2g of a ball that is thrown up, v normal: its quantiles are those of v, squared, and the mean is (v² +
+/// σ²)/2g.
 #[test]
 fn reduced_outputs_have_quantiles() {
     let place = Place::new();

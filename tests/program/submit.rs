@@ -1,4 +1,4 @@
-//! `mbint submit --slurm`, with a program in the place of `sbatch` that runs what it is given. Under a real Slurm:
+//! `mbint submit --slurm`, with a program in the place of `sbatch` that runs its last argument. Under a real Slurm:
 //! `tests/cluster/slurm.sh`.
 
 #![cfg(unix)]
@@ -16,7 +16,7 @@ SLURM_ARRAY_TASK_ID=0 bash "$script" >&2 || exit 1
 echo 7
 "#;
 
-/// A planned study in a folder of this name, and what submitting it ends with.
+/// Plans a study in a folder of this name, and submits it; gives the exit status and the messages.
 fn submitted(place: &Place, study: &str, results: &str) -> (Option<i32>, String) {
     let bin = place.path().join("bin");
     fs::create_dir_all(&bin).unwrap();

@@ -8,7 +8,7 @@ use std::path::Path;
 
 use super::place::Place;
 
-/// What is smaller is rounding.
+/// Smaller values are rounding.
 const ROUNDING: f64 = 1e-9;
 
 /// A table in four digits; columns of errors, which search by samples, left out.

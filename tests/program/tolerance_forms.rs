@@ -3,7 +3,7 @@
 
 use mbint::Model;
 
-/// What is written, and the interval about 0.5 that it stands for.
+/// Text of a tolerance, and the interval about 0.5 that it stands for.
 const WHOLE: [(&str, [f64; 2]); 9] = [
     ("0.5 kg ± 1%", [0.495, 0.505]),
     ("0.5 kg +/- 1%", [0.495, 0.505]),

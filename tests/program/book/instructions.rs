@@ -34,7 +34,7 @@ fn shipped() -> Vec<std::path::PathBuf> {
     files
 }
 
-/// A step may have so many times the instructions of the last row of `docs/performance/record.csv`.
+/// Largest ratio of a step's instructions to those of the last row of `docs/performance/record.csv`.
 const MOST: f64 = 1.02;
 
 /// Models whose step costs more than in the last row of the record allows, with both counts. Models that the row has

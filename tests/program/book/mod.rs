@@ -21,7 +21,7 @@ fn docs() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("docs")
 }
 
-/// Compares a page with what it should be, or writes it.
+/// Compares a page with its current text, or writes it.
 pub(crate) fn expect_page(file: &Path, current: &str) {
     if std::env::var_os("MBINT_UPDATE_DOCS").is_some() {
         std::fs::write(file, current).unwrap();
@@ -36,7 +36,7 @@ fn blocks<'a>(page: &'a str, language: &str) -> Vec<&'a str> {
     fences.filter_map(|block| block.strip_prefix(language)?.strip_prefix('\n')).collect()
 }
 
-/// Pages of the book; decisions tell of what was, so that their figures are not those of today.
+/// Pages of the book; decisions report past states, so that their figures are not those of today.
 fn pages(folder: &Path, into: &mut Vec<PathBuf>) {
     let mut entries: Vec<PathBuf> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
     entries.sort();
@@ -56,7 +56,7 @@ const NO_RESULTS: [(&str, &[&str]); 5] = [
     ("guides/check.md", &["150", "150"]),
     // Of rims, of the number of pairs, and Hertz's duration.
     ("guides/contact.md", &["120°", "400", "144,", "2.94"]),
-    // A year, and what is left of a model that `tests/models/controllers.rs` compares with a closed form.
+    // A year, and the remaining angles of a model that `tests/models/controllers.rs` compares with a closed form.
     ("guides/states.md", &["(2009),", "−1.79°", "1.93°", "−3.22°", "2.81°."]),
     ("guides/trajectories.md", &["(2008),"]),
     // Of an allocation's first lines, and a yield that is asked for.

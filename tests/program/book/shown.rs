@@ -1,9 +1,9 @@
-//! What pages show: commands with what they print, and the figures of their text.
+//! Contents of pages: commands with their output, and the figures of their text.
 //!
-//! A block `console` has commands, each after `$ `, and what they print; a line `…` stands for any lines. Commands run
-//! in a folder of the page, with the repository's `docs` and `models` in it; a block `yaml` that begins with
-//! `# NAME.yaml` is a file there. Numbers are compared with a tolerance, since a page shows what the program computes
-//! and not its last digits.
+//! A block `console` has commands, each after `$ `, and their output; a line `…` stands for any lines. Commands run in
+//! a folder of the page, with the repository's `docs` and `models` in it; a block `yaml` that begins with `# NAME.yaml`
+//! is a file there. Numbers are compared with a tolerance, since a page shows what the program computes and not its
+//! last digits.
 
 use std::path::Path;
 use std::process::Command;
@@ -13,7 +13,7 @@ use super::{BINARY, blocks};
 /// Relative difference of numbers that are the same to a reader.
 const SAME: f64 = 2e-3;
 
-/// What is smaller is an error of rounding: how small is of no interest.
+/// Smaller values are errors of rounding: their size is of no interest.
 const ROUNDING: f64 = 1e-7;
 
 /// A page's blocks as they should be; `None` where they are.
@@ -40,7 +40,7 @@ pub fn current(page: &str, folder: &Path) -> Option<String> {
     (current != page).then_some(current)
 }
 
-/// The commands of a console block with what they print.
+/// The commands of a console block with their output.
 fn run_commands(block: &str, folder: &Path) -> String {
     let path = format!("{}:{}", Path::new(BINARY).parent().unwrap().display(), std::env::var("PATH").unwrap());
     let commands = block.lines().filter_map(|line| line.strip_prefix("$ "));
@@ -48,7 +48,7 @@ fn run_commands(block: &str, folder: &Path) -> String {
         let shell = format!("{{ {command}\n}} 2>&1");
         let output = Command::new("sh").args(["-c", &shell]).current_dir(folder).env("PATH", &path).output().unwrap();
         let text = String::from_utf8(output.stdout).unwrap();
-        // What is said while one waits depends on the machine.
+        // Lines of progress depend on the machine.
         let text: String =
             text.lines().filter(|line| !line.contains(" % done")).flat_map(|line| [line, "\n"]).collect();
         format!("$ {command}\n{text}")
@@ -56,7 +56,7 @@ fn run_commands(block: &str, folder: &Path) -> String {
     commands.map(print).collect()
 }
 
-/// Whether a block says what is printed.
+/// Whether a block has the printed text.
 fn is_shown(block: &str, printed: &str) -> bool {
     let mut rest: Vec<&str> = printed.lines().collect();
     let parts: Vec<Vec<&str>> =
@@ -148,8 +148,8 @@ fn pieces(word: &str) -> Vec<Piece> {
     pieces
 }
 
-/// Figures of a page's text, of three digits or more, that none of its blocks has, rounded: what a page concludes is
-/// from what it shows.
+/// Figures of a page's text, of three digits or more, that none of its blocks has, rounded: a page concludes only from
+/// the output that it shows.
 pub fn unfounded(page: &str) -> Vec<String> {
     let mut founded: Vec<f64> = Vec::new();
     let mut text = String::new();
@@ -172,7 +172,7 @@ pub fn unfounded(page: &str) -> Vec<String> {
             let value = value.abs();
             let half = 0.5 * 10_f64.powi(-decimals);
             let has_three_digits = value / (2.0 * half) >= 99.5;
-            // A prefix of the unit, or degrees of what is in radians.
+            // A prefix of the unit, or degrees instead of radians.
             let scales = [1.0, 1e3, 1e-3, 180.0 / std::f64::consts::PI];
             let is_founded =
                 founded.iter().any(|x| scales.iter().any(|scale| (scale * x - value).abs() <= half * (1.0 + 1e-9)));

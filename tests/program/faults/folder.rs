@@ -1,4 +1,4 @@
-//! What is in a folder of results after a run: its files, nothing that an older run left, and never half of a run in
+//! Contents of a folder of results after a run: its files, nothing that an older run left, and never half of a run in
 //! place of a whole.
 
 #![cfg(unix)]

@@ -224,7 +224,7 @@ fn a_lock_inside_the_box_is_left_out_from_when_it_locks() {
     assert!(last <= 0.75 && last > 0.7, "{last}");
 }
 
-/// One sample of a few that runs into a square root of what is negative: the others are what they are without it.
+/// One sample of a few runs into a square root of a negative number: the others have the same values as without it.
 #[test]
 fn a_sample_that_diverges_leaves_the_others_as_they_are() {
     let model = |interval: &str| {

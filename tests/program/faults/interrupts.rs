@@ -99,7 +99,7 @@ fn compiling_ends_at_a_ctrl_c() {
     assert!(ended.stdout.is_empty());
 }
 
-/// A spring with so many quantiles of its motion that they take minutes.
+/// A spring with 1999 quantiles of its motion, which take minutes.
 fn quantiles(place: &Place) {
     let shares: Vec<String> = (1..2000).map(|share| format!("{}", f64::from(share) / 2000.0)).collect();
     let text = format!(

@@ -7,7 +7,7 @@ use std::process::{Command, Output};
 
 use crate::place::Place;
 
-/// A mass that is pushed: what is asked of it, and of how long a motion.
+/// A mass that is pushed, with questions `asked` and settings `simulation` of its motion.
 fn pushed(place: &Place, asked: &str, simulation: &str) {
     let text = format!(
         "model: pushed\n\
@@ -21,7 +21,7 @@ fn pushed(place: &Place, asked: &str, simulation: &str) {
     fs::write(place.path().join("pushed.yaml"), text).unwrap();
 }
 
-/// A run that may have so many kilobytes of data. (A limit of addresses would count the program's size and what the
+/// A run whose data may take `kilobytes` kilobytes. (A limit of addresses would count the program's size and what the
 /// allocator only reserves for a thread: 64 MB each, at random.)
 fn limited(place: &Place, kilobytes: u64) -> Output {
     let run =

@@ -1,5 +1,5 @@
-//! What can go wrong around a run, and uncertainty that a mechanism does not bear: nothing half is left, what is
-//! finished is kept, and what is reported is true.
+//! Faults around a run, and uncertainty that a mechanism does not bear: no half-written file is left, finished results
+//! are kept, and reports are true.
 
 mod disk;
 mod folder;

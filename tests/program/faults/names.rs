@@ -40,7 +40,7 @@ fn a_model_that_is_called_like_its_file_stays_in_its_folder() {
     assert_eq!(place.files("results").len(), 1);
 }
 
-/// What is reported of a file keeps to its lines, and sends nothing to the terminal, whatever the file is called.
+/// Reports on a file keep to their lines, and send nothing to the terminal, whatever the name of the file.
 #[test]
 fn control_characters_of_a_name_are_not_shown() {
     let place = Place::new();

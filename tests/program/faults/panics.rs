@@ -19,7 +19,7 @@ simulation: { duration: 0.05, step: 1e-3 }
 bounds: { chebyshev: { order: 2 }, taylor: { order: 2 }, scan: { points: 4 } }
 ";
 
-/// A run in which what is called for progress panics once, at the first report beyond a fraction.
+/// A run whose progress callback panics once, at the first report beyond a fraction.
 fn with_one_panic(text: &str, beyond: f64) -> (mbint::results::Bounds, mbint::results::Summary) {
     let model = Model::from_yaml_str("test", text).unwrap_or_else(|error| panic!("{error}"));
     let panicked = AtomicBool::new(false);

@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 
 use crate::place::Place;
 
-/// A mass that is pushed, with so many outputs.
+/// A mass that is pushed, with `outputs` outputs.
 fn pushed(place: &Place, outputs: usize) {
     let outputs: Vec<String> = (0..outputs).map(|number| format!("o{number}: \"{}*b.x\"", number + 1)).collect();
     let text = format!(
@@ -27,7 +27,7 @@ fn pushed(place: &Place, outputs: usize) {
     fs::write(place.path().join("pushed.yaml"), text).unwrap();
 }
 
-/// What people see in a folder, by name.
+/// Visible files of a folder, by name.
 fn seen(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     let entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
     let files = entries.filter(|path| path.is_file()).map(|path| {
@@ -60,7 +60,7 @@ fn killed(times: u32) -> (u32, u32) {
     for kill in 0..times {
         let mut command = place.command(commands[(kill as usize + 1) % 2]);
         let mut run = command.args(["-o", "out"]).stderr(Stdio::null()).spawn().unwrap();
-        // Of three kills two are aimed at the replacement itself, the others at what is written before.
+        // Of three kills two are aimed at the replacement itself, the others at the files that are written before.
         let (has_begun, wait): (&dyn Fn() -> bool, u32) =
             if kill % 3 == 0 { (&is_written, kill * 50) } else { (&is_replaced, kill * 37 % 100 * 40) };
         while run.try_wait().unwrap().is_none() && !has_begun() {}

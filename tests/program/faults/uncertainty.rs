@@ -111,7 +111,7 @@ bounds: { chebyshev: { order: 5 }, taylor: { order: 4 }, scan: { points: 5 } }
 }
 
 /// A bead on a turning hoop: from w² = g/r on, the bottom is left to one side or the other. The interval of w has that
-/// inside, that of the start has both sides. What is not resolved has to say so: every sample of a denser scan lies in
+/// inside, that of the start has both sides. Unresolved rows have to be marked: every sample of a denser scan lies in
 /// the others' bounds, their errors included, or the row is marked.
 #[test]
 fn bounds_through_a_bifurcation_hold_or_say_that_they_do_not() {

@@ -60,7 +60,7 @@ fn description(version: u32, ball: bool) -> String {
     let fill = |text: &str| text.replace("START_K", k).replace("START_M", m).replace("UNIT_K", unit);
     let variable = |(index, (name, kind, causality, more)): (usize, &(&str, &str, &str, &str))| {
         let more = fill(more);
-        // What is set is fixed, and exact; what is an output is calculated.
+        // Parameters are fixed, and exact; outputs are calculated.
         let own = if *causality == "output" { "continuous" } else { "fixed" };
         let own = if *kind == "Int32" && *causality == "output" { "discrete" } else { own };
         let head =

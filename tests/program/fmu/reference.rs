@@ -112,7 +112,7 @@ fn covers(unit: &Unit, interface: &str, model: &str, samples: &[Vec<Vec<f64>>]) 
     }
 }
 
-/// Motion by steps of Euler's method, as the units have it; `rows` of so many steps each.
+/// Motion by steps of Euler's method, as the units have it; `rows` rows of `steps` steps each.
 fn euler<const N: usize>(
     mut x: [f64; N],
     h: f64,
