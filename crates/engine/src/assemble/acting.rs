@@ -15,7 +15,7 @@ pub struct Acting<'m, 'g, 'd> {
     pub m: &'m Mechanism<'g, 'd>,
     /// Index of the effect among all.
     pub effect: usize,
-    /// What acts on it so far.
+    /// Forces applied to the mechanism so far.
     pub applied: &'m mut AppliedForces<'g>,
 }
 

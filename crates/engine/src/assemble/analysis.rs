@@ -1,4 +1,4 @@
-//! What an analysis makes of the equations.
+//! The equations in the form that an analysis needs.
 
 use std::borrow::Cow;
 
@@ -28,8 +28,9 @@ impl System {
         is_in(&self.of_motion()) || is_in(&self.constraint)
     }
 
-    /// The equations for a configuration at rest, in which states rest, too: each is the position of its coordinate in
-    /// place of its velocity, and its rate the force on it; a state that changes at instants has its new value.
+    /// The equations for a configuration at rest, in which states rest, too: each is represented by the position of its
+    /// coordinate instead of its velocity, and its rate is the force on it; a state that changes at instants has its
+    /// new value.
     pub fn at_rest(&self) -> Cow<'_, Self> {
         let states: Vec<usize> = (0..self.q.len()).filter(|&index| self.coordinates[index].is_state).collect();
         if states.is_empty() {
@@ -80,8 +81,8 @@ impl System {
         }
     }
 
-    /// Without forces and masses: w minimises Σ (w/scale)², and so is what the constraints make of it. Where they
-    /// leave no freedom, nothing else is.
+    /// Removes forces and masses: w minimises Σ (w/scale)² and follows from the constraints alone. If they leave no
+    /// freedom, they determine everything else, too.
     pub(super) fn forget_forces(&mut self) {
         let graph = &mut self.graph;
         let mut mass = Vec::with_capacity(self.q.len());

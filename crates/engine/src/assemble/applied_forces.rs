@@ -28,7 +28,7 @@ struct Guard<'g> {
     condition: Scalar<'g>,
 }
 
-/// What acts only where a condition is positive.
+/// A part of a force that acts only where a condition is positive.
 #[derive(Clone, Copy)]
 struct Guarded<'g> {
     guard: Guard<'g>,
@@ -62,7 +62,7 @@ pub struct AppliedForces<'g> {
     pub overlap: Option<(Scalar<'g>, Scalar<'g>)>,
     /// The condition of the terms that are added now, if they have one.
     guard: Option<Guard<'g>>,
-    /// What acts under conditions.
+    /// Parts of forces that act under conditions.
     guarded: Vec<Guarded<'g>>,
 }
 
@@ -96,9 +96,9 @@ impl<'g> AppliedForces<'g> {
         self.guard = None;
     }
 
-    /// What the effect adds from now on acts only where `condition` is positive, whatever its expressions are
-    /// elsewhere, and is not computed where no sample of a tile needs it. It vanishes continuously as the condition
-    /// does.
+    /// Makes everything that the effect adds from now on act only where `condition` is positive, whatever its
+    /// expressions are elsewhere; it is not computed where no sample of a tile needs it. It vanishes continuously as
+    /// the condition does.
     pub fn only_where(&mut self, condition: Scalar<'g>) {
         self.guard = Some(Guard { within: None, condition });
     }
@@ -127,18 +127,18 @@ impl<'g> AppliedForces<'g> {
         all
     }
 
-    /// What acts under conditions alone.
+    /// Only the forces that act under conditions.
     pub fn guarded(&self) -> Self {
         let guarded = self.guarded.clone();
         Self { guarded, ..Self::new(self.g, self.bodies.len()) }.with_guarded()
     }
 
-    /// Something that the effect measures, for outputs.
+    /// Adds a quantity that the effect measures, for outputs.
     pub fn sensor(&mut self, measure: Sensor, value: Scalar<'g>) {
         self.measured.push((measure, value));
     }
 
-    /// What the effect measures.
+    /// Quantities that the effect measures, with their values.
     pub fn measured(&self) -> &[(Sensor, Scalar<'g>)] {
         &self.measured
     }
@@ -187,7 +187,7 @@ impl<'g> AppliedForces<'g> {
         moved.len()
     }
 
-    /// The wrench on each body, about its frame's origin, without what acts under conditions.
+    /// The wrench on each body, about its frame's origin, without forces that act under conditions.
     pub fn wrenches(&self) -> &[Wrench<'g>] {
         &self.bodies
     }
@@ -197,7 +197,7 @@ impl<'g> AppliedForces<'g> {
         self.coordinates.iter().map(|(&index, &effort)| (index, effort))
     }
 
-    /// The wrench on each body, with what acts on its children, and on theirs.
+    /// The wrench on each body, including those on its children, and on theirs.
     pub fn with_children(&self, m: &Mechanism<'g, '_>) -> Vec<Wrench<'g>> {
         let mut totals = self.bodies.clone();
         for &index in m.tree.order.iter().rev() {
@@ -287,9 +287,9 @@ impl<'g> AppliedForces<'g> {
         }
     }
 
-    /// A torque about a joint's axis on its second body and the opposite on its first, or a force along it at the
-    /// second point and the opposite on the first body at the same place; on the joint's coordinate, where that is one
-    /// of the mechanism's own.
+    /// Adds a torque about a joint's axis on its second body and the opposite on its first, or a force along it at the
+    /// second point and the opposite on the first body at the same position; on the joint's coordinate, if the
+    /// mechanism has that coordinate.
     pub fn add_joint_effort(
         &mut self,
         m: &Mechanism<'g, '_>,

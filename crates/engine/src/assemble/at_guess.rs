@@ -1,4 +1,4 @@
-//! Values of expressions where assembly begins to look for the start.
+//! Values of expressions at the guess from which assembly starts.
 
 use rustc_hash::FxHashMap;
 use symdiff::{Expr, Graph, Scalar};

@@ -27,11 +27,11 @@ use crate::multibody::BuildError;
 /// `auto` is in absolute coordinates here.
 ///
 /// Parameters that are certain are folded in; only intervals become symbols. Constraints that hold whatever moves (both
-/// sides prescribed) are left out. The work is linear in the number of bodies, joints and effects.
+/// sides prescribed) are omitted. The work is linear in the number of bodies, joints and effects.
 ///
 /// # Errors
 /// A constraint that nothing can fulfil, joint coordinates that are asked for where they are not possible, and (for
-/// descriptions that were not checked) a name out of place.
+/// descriptions that were not checked) a name that its context does not allow.
 pub fn build(questions: &Questions) -> Result<System, BuildError> {
     match questions.formulation {
         Formulation::Joint => {
@@ -51,12 +51,11 @@ pub fn in_absolute_coordinates(questions: &Questions) -> Result<System, BuildErr
     Ok(system(builder.finish()))
 }
 
-/// As many bodies as can be are children, without coordinates of their own; or why that is not possible here. With
-/// `deepest`, not where a body is more joints than that from its root on average. Loops are closed from where absolute
-/// coordinates begin to look, or from an assembled start in absolute coordinates (their values) where it is known.
-/// Where the tree cannot be used and the questions leave its cut open, the first that can and differs in one joint,
-/// or in those of several axes, takes its place: a reaction that a force depends on is known where its joint closes a
-/// loop.
+/// As many bodies as possible are children, without coordinates of their own; or the reason why that is impossible.
+/// With `deepest`, it is refused if bodies are more joints than that from their roots on average. Loops are closed from
+/// the guess in absolute coordinates, or from an assembled start in absolute coordinates (their values) if it is known.
+/// If the tree cannot be used and the questions leave its cut open, it is replaced by the first usable one that differs
+/// in one joint, or in those of several axes: a reaction that a force depends on is known if its joint closes a loop.
 ///
 /// # Errors
 /// As for [`build`].
@@ -209,7 +208,7 @@ fn equations(mut m: Mechanism) -> Result<impl FnOnce(Graph) -> System + use<>, B
     })
 }
 
-/// The forces of all effects, and what each came to.
+/// The forces of all effects, and the description of each effect.
 fn apply_effects<'g>(
     m: &mut Mechanism<'g, '_>,
     description: &Description,
@@ -251,13 +250,13 @@ struct Balance<'g> {
     mass: Vec<(usize, usize, Scalar<'g>)>,
     /// Which coordinates have inertia.
     massive: Vec<bool>,
-    /// M w, with what [`System::inertia`] says.
+    /// M w, with the terms listed at [`System::inertia`].
     inertia: Vec<Scalar<'g>>,
     /// Q
     force: Vec<Scalar<'g>>,
     /// Where it is not positive, nothing acts that acts under conditions.
     active_condition: Option<Scalar<'g>>,
-    /// What acts under conditions.
+    /// Generalised forces that act under conditions.
     conditional: Vec<Scalar<'g>>,
     /// The children, parents first.
     links: Vec<ChildLink>,
@@ -270,7 +269,7 @@ impl<'g> Balance<'g> {
         let g = m.g;
         let mut mass = Vec::new();
         let mut force = applied.generalised(m);
-        // What acts only under conditions is summed apart, so that nothing of it is computed where nothing acts.
+        // Forces that act only under conditions are summed separately, so that they are not computed where none acts.
         let active_condition = applied.conditions().into_iter().reduce(Scalar::max);
         let mut conditional = vec![g.number(0.0); force.len()];
         if let Some(active_condition) = active_condition {
@@ -318,7 +317,7 @@ impl<'g> Balance<'g> {
     }
 }
 
-/// Whether M is left out because the average link has many others in its tree.
+/// Whether M is omitted because the average link has many others in its tree.
 fn are_long(links: &[ChildLink]) -> bool {
     let mut roots: Vec<usize> = Vec::with_capacity(links.len());
     let mut sizes = vec![0_usize; links.len()];

@@ -1,4 +1,4 @@
-//! A child's place and motion by the coordinates of its joint; [`super::mobilizers`] for joints of more axes than one.
+//! A child's position and motion by the coordinates of its joint; [`super::mobilizers`] for joints of several axes.
 //!
 //! With F₁, F₂ the joint's frames, A₁, A₂ their rotations in their bodies, u the axis, φ the angle, s the
 //! displacement, the second body is rotated by A₁ R(u, φ) A₂ᵀ against the first, and F₂'s origin is u s from that of

@@ -1,10 +1,10 @@
-//! Where to look for the coordinates of joints that close loops, or whose bodies `guess` names, in joint coordinates.
+//! Guesses of inboard joints' coordinates if joints close loops or `guess` names a child, in joint coordinates.
 //!
-//! A guess of a body without coordinates of its own says where its body would be if every body had coordinates: poses
-//! are propagated from the ground with the named coordinates, as in absolute coordinates. The inboard joints'
-//! coordinates are measured there and start from these values: those of all children, so that a loop is closed from
-//! the same place, and those of joints whose coordinates have no names, so that they start from the given coordinates
-//! of their bodies. It is closed in the same branch where the assembled start in absolute coordinates is known.
+//! A guess of a body without coordinates of its own gives its pose as if every body had coordinates: poses are
+//! propagated from the ground with the named coordinates, as in absolute coordinates. The inboard joints' coordinates
+//! are measured there and start from these values: those of all children, so that a loop is closed from the same
+//! configuration, and those of joints whose coordinates have no names, so that they start from the given coordinates of
+//! their bodies. The loop is closed in the same branch if the assembled start in absolute coordinates is known.
 
 use symdiff::{Builder, Scalar};
 
@@ -15,8 +15,8 @@ use crate::model::StartValue;
 use crate::multibody::BuildError;
 
 impl Mechanism<'_, '_> {
-    /// Notes where to look for the inboard joints' coordinates, if `guess` names a child or joints close loops.
-    /// `assembled` are the coordinates of an assembled start in absolute coordinates, where it is known.
+    /// Stores guesses of the inboard joints' coordinates, if `guess` names a child or joints close loops. `assembled`
+    /// are the coordinates of an assembled start in absolute coordinates, if it is known.
     ///
     /// # Errors
     /// A formula with a name that cannot stand in it.

@@ -23,7 +23,7 @@ pub struct ConstraintRows<'g> {
     pub lambda: Vec<Scalar<'g>>,
 }
 
-/// The rows that are kept.
+/// The rows that constrain something.
 #[derive(Default)]
 pub struct Constraints<'g> {
     /// Φ

@@ -8,7 +8,7 @@
 //! displacement s:    Φ = R₁ a · (r_B − r_A) − s = 0
 //! ```
 //!
-//! so that angles are continuous over any number of turns, and can be driven, coupled and kept at the start like any
+//! so that angles are continuous over any number of turns, and can be driven, coupled and given at the start like any
 //! other coordinate. Forces on them reach the bodies through the constraint's multiplier, which is no part of the
 //! joint's reaction. In the plane an angle is the difference θ₂ − θ₁, and is a coordinate of its own only where the
 //! start names it.
@@ -69,9 +69,9 @@ pub fn formulas_of_motion(description: &Description) -> Vec<&Formula> {
 
 /// Φ of a constraint that defines a joint's own coordinate.
 pub struct Definition<'g> {
-    /// Of the coordinate.
+    /// Name of the coordinate.
     pub name: &'static str,
-    /// Which it is.
+    /// The coordinate.
     pub coordinate: JointCoordinate,
     /// Φ, rad or m.
     pub value: Scalar<'g>,

@@ -1,6 +1,6 @@
 //! Beams with mass: the inertia and weight of an element between two frames, and how it starts.
 //!
-//! What lies between the ends follows them by Hermite's cubics, L t being the derivative at an end whose axis is t:
+//! The points between the ends follow them by Hermite's cubics; L t is the derivative at an end whose axis is t:
 //!
 //! ```text
 //! r(s) = N₁ r_A + N₂ L t_A + N₃ r_B + N₄ L t_B           t = (cos θ, sin θ),  n = t⊥
@@ -90,7 +90,7 @@ impl<'g> Mechanism<'g, '_> {
         Ok([about_y + about_z, about_y, about_z].into())
     }
 
-    /// Generalised inertial forces of all beams, n: their part of M w, with what depends on velocities.
+    /// Generalised inertial forces of all beams, n: their part of M w, with velocity-dependent terms.
     pub fn inertia_of_beams(&self) -> Result<Vec<Scalar<'g>>, BuildError> {
         let mut applied = AppliedForces::new(self.g, self.bodies.len());
         for element in self.elements()? {

@@ -9,11 +9,11 @@ use crate::model::{Description, JointKind, Reference, StartValue, Symbol};
 use crate::multibody::Context;
 
 impl Mechanism<'_, '_> {
-    /// What prevents joint coordinates; `None` where nothing does.
+    /// The reason that prevents joint coordinates; `None` if nothing does.
     ///
-    /// Where joint coordinates are one choice of two (`is_chosen`), a start that names coordinates of bodies speaks
-    /// for absolute ones, and a guess where no joints close loops: those are closed from the assembled start in
-    /// absolute coordinates.
+    /// Where joint coordinates are one choice of two (`is_chosen`), a start that names coordinates of bodies is in
+    /// favour of absolute ones, and so is a guess if no joints close loops: those are closed from the assembled start
+    /// in absolute coordinates.
     pub fn obstacle(&self, description: &Description, is_chosen: bool) -> Option<String> {
         if self.tree.is_absolute() {
             return Some("no joint can give a body its position".to_owned());
@@ -55,7 +55,7 @@ impl Mechanism<'_, '_> {
                 | StartValue::RollPitchYaw { .. }
                 | StartValue::Point { .. } => None,
             };
-            // Where a joint's coordinates have no names, those of the body are its place in the tree.
+            // If a joint's coordinates have no names, those of the body give its position in the tree.
             let inboard = self.tree.inboard[*body?].filter(|inboard| !self.has_no_names(inboard.joint));
             let body = body.filter(|_| inboard.is_some())?;
             let name = &d.bodies[*body].name;
@@ -63,7 +63,7 @@ impl Mechanism<'_, '_> {
         })
     }
 
-    /// A reaction of an inboard joint, where it cannot be told from the forces that it depends on.
+    /// Obstacle: a reaction of an inboard joint is needed that has no multiplier.
     fn lost_reaction(&self, d: &Description) -> Option<String> {
         let reaction = |formulas: Vec<&Formula>| {
             formulas.iter().flat_map(|formula| formula.names()).find_map(|(name, _)| match d.symbol(name) {
@@ -76,7 +76,7 @@ impl Mechanism<'_, '_> {
                 "a force depends on the reaction of joint `{joint}`, which has no multiplier in joint coordinates"
             ));
         }
-        // What acts on coordinates of joints alone is no part of a joint's reaction.
+        // Forces on coordinates of joints alone are no part of a joint's reaction.
         let of_joints = |formula: &Formula| {
             formula.names().all(|(name, _)| {
                 let known = d.symbol(name);

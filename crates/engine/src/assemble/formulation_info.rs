@@ -9,7 +9,7 @@ pub struct FormulationInfo {
     pub why: String,
     /// The joints that close loops of the trees, by number; none in absolute coordinates.
     pub cut: Vec<usize>,
-    /// The assembled start in absolute coordinates from which loops are closed; `None` where it is not known.
+    /// The assembled start in absolute coordinates from which loops are closed; `None` if it is not known.
     pub closed_from: Option<Vec<f64>>,
 }
 

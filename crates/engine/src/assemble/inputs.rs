@@ -33,8 +33,8 @@ impl MechanismInput<'_> {
     }
 }
 
-/// A random excitation about which a mechanism is linearised: it is zero, and what acts on the mechanism follows from
-/// derivatives by it.
+/// A random excitation about which a mechanism is linearised: its value is zero, and its effect on the mechanism
+/// follows from the derivatives by it.
 #[derive(Clone, Debug)]
 pub struct RandomInput {
     /// Symbols of its value, rate and acceleration.

@@ -1,4 +1,4 @@
-//! What an engineer counts of a mechanism before anything is computed: freedoms of bodies, constraints of joints, mass.
+//! Counts of a mechanism before any computation: freedoms of bodies, constraints of joints, mass.
 
 use symdiff::{Builder, Formula, Interval, Ranges};
 
@@ -15,19 +15,19 @@ pub struct Inventory {
     pub joints: usize,
     /// Constraints of these joints.
     pub constraints: usize,
-    /// Freedoms that bodies do not have because their coordinates are held, at values that do not change.
+    /// Freedoms that bodies lack because their coordinates are prescribed at constant values.
     pub held: usize,
-    /// Constraints and held coordinates that prescribe a motion: of motors, and those that depend on t.
+    /// Constraints and prescribed coordinates that impose a motion: of motors, and those that depend on t.
     pub drives: usize,
     /// Mass of all bodies and beams, kg: at the nominal parameters, and between which values it lies over their box.
     pub mass: [f64; 3],
 }
 
 impl Inventory {
-    /// Of a description with its questions.
+    /// Counts the parts of a description with its questions.
     ///
     /// # Errors
-    /// For descriptions that were not checked, a name out of place.
+    /// For descriptions that were not checked, a name that its context does not allow.
     pub fn of(questions: &Questions) -> Result<Self, BuildError> {
         let description = questions.description;
         let builder = Builder::new();
@@ -38,7 +38,7 @@ impl Inventory {
             if joint.kind.drives() {
                 rows.extend(m.velocity_rows(index)?);
             }
-            // What nothing can change constrains nothing.
+            // A row without coordinates constrains nothing.
             let rows = rows.iter().filter(|row| !m.is_given(&[row.value])).count();
             // A joint that changes with t moves one of its freedoms; the rows of one on a body that is moved do not
             // say so.
@@ -61,7 +61,7 @@ fn is_of_time(description: &Description, formula: &Formula) -> bool {
     formula.names().any(|(name, _)| matches!(description.symbol(name), Some(Symbol::Time | Symbol::Trajectory { .. })))
 }
 
-/// Freedoms that a body lacks: held at a value, moved with t.
+/// Numbers of freedoms that a body lacks: prescribed at a value, and prescribed as a function of t.
 fn held(description: &Description, body: &Body) -> [usize; 2] {
     let all: usize = if description.space.spatial { 6 } else { 3 };
     let freedoms = |coordinate: &Coordinate| match coordinate {
@@ -96,7 +96,7 @@ impl Mechanism<'_, '_> {
         let ranges = Ranges::new(&self.g.graph(), &symbols, &[mass.expr()]);
         let mut memory = Vec::new();
         let range = ranges.enclose(&sides, &mut memory).next();
-        // A certain mass is one number, not the two beside it.
+        // A certain mass is one number, not the two floating-point numbers next to it.
         let is_certain = self.g.graph().symbols_of(&[mass.expr()]).is_empty();
         Ok(match range.filter(|_| !is_certain) {
             Some(range) => [nominal, range.lower(), range.upper()],

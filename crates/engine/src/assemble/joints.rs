@@ -1,4 +1,4 @@
-//! Joints in a mechanism: what their constraints are written in, their axes, and the rates of their coordinates.
+//! Joints in a mechanism: the quantities in their constraints, their axes, and the rates of their coordinates.
 
 use symdiff::{Builder, Formula, Scalar};
 
@@ -29,8 +29,7 @@ impl<'g> Mechanism<'g, '_> {
         self.joints[joint].kind.meshing(joint, &Motion(self))
     }
 
-    /// The unit vector about (along) which a joint's coordinate is counted, in the ground's axes; zero where it has
-    /// none.
+    /// The unit vector about (along) which a joint's coordinate is counted, in the ground's axes; zero if it has none.
     pub fn axis_in_ground(&self, on: OnJoint) -> Result<Vector<'g>, BuildError> {
         let kind = &self.joints[on.joint].kind;
         let (Some(between), Some(axis)) = (kind.between(), kind.axis_of(on.coordinate)) else {

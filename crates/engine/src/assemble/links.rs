@@ -8,7 +8,7 @@ use super::recursion::InertialForces;
 use super::system::ChildLink;
 use crate::multibody::{Attitude, Vector, Wrench};
 
-/// The children with what goes through them: motions, and the sums of forces.
+/// The children with the values that pass through them: motions, and the sums of forces.
 pub(super) fn links_of<'g>(
     m: &Mechanism<'g, '_>,
     inertial: &InertialForces<'g>,

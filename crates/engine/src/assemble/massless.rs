@@ -4,7 +4,7 @@
 //! constraint as well,
 //!
 //! ```text
-//! Φ_i = Q_i(q, t)/k = 0      k = max_j |∂Q_i/∂q_j| where the start is looked for: Φ_i is in metres or radians
+//! Φ_i = Q_i(q, t)/k = 0      k = max_j |∂Q_i/∂q_j| at the guess of the start: Φ_i is in metres or radians
 //! ```
 //!
 //! so that the start, velocities and accelerations follow it. In the rows of these coordinates m then stands Q_m = 0 =

@@ -40,18 +40,18 @@ pub enum RelativeCoordinate {
     Euler(usize),
 }
 
-/// What one of q is a coordinate of.
+/// The owner of one of q.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Owner {
-    /// Of a body.
+    /// A body.
     Body(usize, Coordinate),
-    /// Of a joint: of a tree's, or defined by a constraint, without inertia.
+    /// A joint: of a tree, or with a coordinate that a constraint defines, without inertia.
     Joint(usize, JointCoordinate),
-    /// Of a tree's joint, without a name in formulas.
+    /// A joint of a tree; the coordinate has no name in formulas.
     Relative(usize, RelativeCoordinate),
-    /// Of a mode of a flexible body.
+    /// A mode of a flexible body.
     Mode,
-    /// Of a state, which is its velocity.
+    /// A state, which is the velocity of the coordinate.
     State,
 }
 
@@ -96,7 +96,7 @@ pub struct Mechanism<'g, 'd> {
     pub g: &'g Builder,
     /// The description with its questions.
     pub questions: &'d Questions<'d>,
-    /// What names in formulas stand for.
+    /// Meaning of the names in formulas.
     pub names: DescriptionNames<'d>,
     /// Whether it leaves the plane.
     pub is_spatial: bool,
@@ -116,9 +116,9 @@ pub struct Mechanism<'g, 'd> {
     pub random: Vec<RandomSymbols<'g>>,
     /// The parameters that are symbols.
     pub uncertain: Vec<UncertainParameter>,
-    /// Places in q of inboard joints' coordinates, and where to look for them.
+    /// Indices in q of inboard joints' coordinates, with their guesses.
     pub child_guesses: Vec<(usize, f64)>,
-    /// Whether those are of an assembled start, and go before what `guess` says.
+    /// Whether those are of an assembled start, and take precedence over `guess`.
     pub starts_assembled: bool,
     /// All parameters: a symbol, or folded to a number or to an expression of symbols.
     pub parameters: Vec<Scalar<'g>>,
@@ -128,7 +128,7 @@ pub struct Mechanism<'g, 'd> {
     pub v: Vec<Scalar<'g>>,
     /// Accelerations.
     pub w: Vec<Scalar<'g>>,
-    /// What each of `q` is.
+    /// Owner of each of `q`.
     pub coordinates: Vec<Owner>,
     /// Name of each of `q`, e.g. `crank.angle`.
     pub coordinate_names: Vec<String>,
@@ -138,14 +138,14 @@ pub struct Mechanism<'g, 'd> {
     pub tree: Tree,
     /// Indices in `q` of the coordinates of joints that are coordinates of their own.
     pub joint_coordinates: BTreeMap<(usize, JointCoordinate), usize>,
-    /// Places in the constraints of the normalisations of joints' Euler parameters.
+    /// Indices in the constraints of the normalisations of joints' Euler parameters, by joint.
     pub normalisations: BTreeMap<usize, usize>,
-    /// Where the bodies behind joints without names for their coordinates are looked for: x, y, z, then the Euler
+    /// Guessed poses of the bodies behind joints without names for their coordinates: x, y, z, then the Euler
     /// parameters.
     pub body_guesses: BTreeMap<usize, [f64; DEGREES_OF_FREEDOM]>,
-    /// Of the joints built so far.
+    /// Reactions of the joints built so far.
     pub reactions: Vec<Reaction<'g>>,
-    /// The same joints' multipliers, of those with one constraint.
+    /// Multipliers of the same joints, for those with one constraint.
     pub multipliers: Vec<Option<Scalar<'g>>>,
     /// Forces between teeth, where a reaction depends on them.
     pub teeth: Vec<ToothForce<'g>>,
@@ -157,7 +157,7 @@ pub struct Mechanism<'g, 'd> {
     pub states: BTreeMap<(usize, usize), usize>,
     /// Indices in `q` of the modal coordinates, by effect and index among its modes.
     pub modes: BTreeMap<(usize, usize), usize>,
-    /// What the effects built so far measure, and all states.
+    /// Quantities that the effects built so far measure, and all states.
     pub sensors: BTreeMap<(usize, Sensor), Scalar<'g>>,
     /// The forces at points that each of the effects built so far applies.
     pub thrusts: Vec<Vec<Thrust<'g>>>,

@@ -66,7 +66,8 @@ impl<'g> Mechanism<'g, '_> {
         let [parent, child] = [inboard.parent, inboard.child].map(|point| self.local_frame(point));
         let (in_parent, in_child) = (constant_matrix(parent), constant_matrix(child));
         let outwards = in_child.transposed();
-        // Of the child's frame against the parent's, and the place of each frame's axes among those of F₁ and F₂.
+        // Rotation of the child's frame against the parent's, and the index of the parent's axes among those of F₁ and
+        // F₂.
         let (euler, matrix, of_parent, sign) = if inboard.reversed {
             (frames.euler.conjugate(), frames.matrix.transposed(), 1, -1.0)
         } else {

@@ -2,8 +2,8 @@
 //!
 //! `build` reads like the derivation on paper: symbols and bodies (`mechanism`, `construction`), constraints
 //! (`joints`), applied forces (`applied_forces`), inertial forces (`recursion`; `links` their propagation), outputs
-//! (`symbols`), and where the motion starts (`start`, `placement` in the plane, `pose` in space, `nearest` where it is
-//! open); how large the model is (`extent`), and what can be counted of it (`inventory`).
+//! (`symbols`), and the start of the motion (`start`, `placement` in the plane, `pose` in space, `nearest` for an open
+//! start); the model's size (`extent`), and counts of its parts (`inventory`).
 //!
 //! | symbol  | meaning                                   | unit                       |
 //! |---------|-------------------------------------------|----------------------------|

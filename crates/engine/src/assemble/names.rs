@@ -1,4 +1,4 @@
-//! What names in formulas stand for, and where that is known.
+//! Meaning of names in formulas, and the contexts in which it is known.
 
 use crate::elements::Trajectory;
 use crate::grammar::{Symbol, TimeOrder};
@@ -15,7 +15,7 @@ impl<'d> DescriptionNames<'d> {
         Self(description)
     }
 
-    /// What a name stands for, if it stands for anything.
+    /// Meaning of a name, if it has one.
     pub fn symbol(self, name: &str) -> Option<Symbol> {
         self.0.symbol(name)
     }
@@ -25,7 +25,7 @@ impl<'d> DescriptionNames<'d> {
         &self.0.trajectories[index]
     }
 
-    /// What a name stands for, where that is known in the context.
+    /// Meaning of a name that is known in the context.
     pub fn known(self, name: &str, context: Context) -> Result<Symbol, BuildError> {
         let known = self.symbol(name).filter(|&symbol| least_context(symbol) <= context);
         known.ok_or_else(|| BuildError::Name { name: name.to_owned(), allowed: context })

@@ -1,9 +1,8 @@
-//! What the start is nearest to where the model leaves it open: the coordinates of the inboard joints, at zero, or
-//! where `guess` has them or their bodies.
+//! The reference to which a start is nearest if the model leaves it open: zero coordinates of the inboard joints, or
+//! those that `guess` gives for them or for their bodies.
 //!
 //! These are the inboard joints of joint coordinates, so that the start does not depend on the formulation, nor on the
-//! outputs. A root stays near the place where assembly begins to look, and so does a body behind a joint whose
-//! coordinates have no names.
+//! outputs. A root stays near its guess, and so does a body behind a joint whose coordinates have no names.
 
 use symdiff::Scalar;
 
@@ -16,7 +15,7 @@ use crate::model::{Description, StartValue};
 use crate::multibody::{BuildError, Context};
 
 impl<'g> Mechanism<'g, '_> {
-    /// The distances that are smallest at the start, of coordinates that `start` does not keep, in a model of size
+    /// The distances that are smallest at the start, of coordinates that `start` does not give, in a model of size
     /// `length`.
     ///
     /// # Errors
@@ -85,8 +84,8 @@ impl<'g> Mechanism<'g, '_> {
         Ok(distances)
     }
 
-    /// Where `guess` has the coordinate of the inboard joint of a body: it names the joint's, or the body where joints
-    /// place it.
+    /// Guess of the coordinate of a body's inboard joint: its value in `guess`, or its value at the guess of the start
+    /// if `guess` names the body.
     fn guessed(
         &self,
         description: &Description,

@@ -15,7 +15,7 @@ pub struct NumberFormulas {
 }
 
 impl NumberFormulas {
-    /// Of numbers with these names and the parameters of a model.
+    /// Builds formulas of numbers with these names and the parameters of a model.
     pub fn of(parameters: &[Parameter], names: &[&str], formulas: &[Formula]) -> Self {
         let builder = Builder::new();
         let numbers: Vec<_> = names.iter().map(|name| builder.variable(name)).collect();

@@ -66,7 +66,7 @@ pub struct PlanarPoses {
     links: Vec<Vec<Link>>,
     given: Vec<[Option<f64>; DEGREES_OF_FREEDOM]>,
     poses: Vec<Option<[f64; DEGREES_OF_FREEDOM]>>,
-    /// In which the bodies are looked for.
+    /// Grounds of the bodies' instances, in whose axes the bodies are placed.
     frames: Vec<Frame>,
 }
 

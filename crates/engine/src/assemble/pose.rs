@@ -5,9 +5,9 @@
 //!
 //! - at a joint that leaves the frames an axis or less, with the joint's angle and displacement where they are known,
 //!   else at zero; these joints are walked first;
-//! - at a spherical joint, and after those, with its next spherical joint towards its place where that is on a placed
+//! - at a spherical joint, and after those, with its next spherical joint towards its position if that is on a placed
 //!   body, else along the ground's axes;
-//! - at what holds less, last: a distance away along x.
+//! - at joints that constrain less, last: a distance away along x.
 //!
 //! Known coordinates of a body are unchanged. Axes are those of the ground of the body's instance, in its mirror.
 //! Bodies that nothing joins to the ground stay where that is, else at 0.
@@ -80,9 +80,9 @@ pub struct Poses<'m, 'g, 'd> {
     values: Vec<Option<f64>>,
     links: Vec<Vec<Link>>,
     poses: Vec<Option<Pose>>,
-    /// In which the bodies are looked for: the grounds of their instances.
+    /// Grounds of the bodies' instances, in whose axes the bodies are placed.
     frames: Vec<Pose>,
-    /// Whether along x the instances are mirrored.
+    /// Whether the instances are mirrored along x.
     is_flipped: Vec<bool>,
 }
 

@@ -2,7 +2,7 @@
 
 use symdiff::Expr;
 
-/// What an effect does to a mechanism's energy.
+/// Power and stored energy of an effect.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct EffectPower {
     /// Name in the model; `teeth` for the forces between teeth of joints.

@@ -14,14 +14,14 @@ pub struct Reaction<'g> {
     pub magnitude: Scalar<'g>,
     /// About the second point, N m.
     pub torque: Vector<'g>,
-    /// About the joint's axis, N m, where there is no other torque and no force: of a motor and a gear.
+    /// Torque about the joint's axis, N m, if there is no other torque and no force: of a motor and a gear.
     pub about_axis: Option<Scalar<'g>>,
-    /// Along a line that moves against both bodies, N: of a rod its tension.
+    /// Force along a line that moves against both bodies, N: the tension of a rod.
     pub along_line: Option<Scalar<'g>>,
 }
 
 impl<'g> Reaction<'g> {
-    /// Σ λᵢ (forceᵢ, torqueᵢ) over the rows that were kept, each with its multiplier.
+    /// Σ λᵢ (forceᵢ, torqueᵢ) over the rows `kept`, each with its multiplier.
     ///
     /// A dropped row (both sides prescribed) has no multiplier: how much the ground takes up there is not determined by
     /// the motion, and it counts as zero.

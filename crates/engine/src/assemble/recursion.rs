@@ -81,7 +81,7 @@ impl<'g> Motion<'g> {
 pub struct InertialForces<'g> {
     /// On each coordinate, n.
     pub generalised: Vec<Scalar<'g>>,
-    /// On each body, of it and all its children, and of theirs, in its own axes; zero where it is a root without any.
+    /// Wrench on each body, of it and all its children, and of theirs, in its own axes; zero for a root without any.
     pub wrenches: Vec<Wrench<'g>>,
     /// By body, ω, ω̇ and the acceleration of its origin in its own axes; empty where no child follows from it.
     pub motions: Vec<Vec<Scalar<'g>>>,
@@ -189,7 +189,7 @@ fn add_along_euler<'g>(
     }
 }
 
-/// What a root's own coordinates feel of its children.
+/// Adds the inertial forces of a root's children to its own coordinates.
 fn add_on_root<'g>(body: &Body<'g>, Wrench { force, torque }: Wrench<'g>, generalised: &mut [Scalar<'g>]) {
     if body.has_no_coordinates() {
         return;
@@ -203,9 +203,9 @@ fn add_on_root<'g>(body: &Body<'g>, Wrench { force, torque }: Wrench<'g>, genera
 }
 
 impl<'g> Mechanism<'g, '_> {
-    /// The reactions of the joints of the trees, in the ground's axes: what moves a body and all its children, less
-    /// the forces on them and the reactions of the joints `closures`, which are constraints. Along its own coordinates
-    /// a joint has none.
+    /// Adds the reactions of the joints of the trees, in the ground's axes: the force that moves a body and all its
+    /// children, less the forces on them and the reactions of the joints `closures`, which are constraints. Along its
+    /// own coordinates a joint has none.
     pub fn add_reactions_of_trees(
         &mut self,
         applied: AppliedForces<'g>,

@@ -10,11 +10,11 @@ use crate::grammar::JointCoordinate;
 use crate::model::{Coordinate, Description, StartValue, TimeOrder};
 use crate::multibody::{BuildError, Context, EULER, Quaternion};
 
-/// What the angle of a child says of its inboard joint's.
+/// Relation between the angle of a child and that of its inboard joint.
 pub struct InboardAngle<'g, 'd> {
-    /// Place of the joint's angle in q.
+    /// Index of the joint's angle in q.
     index: usize,
-    /// Rotation of the child for one of it: 1 or −1.
+    /// Rotation of the child per joint angle: 1 or −1.
     rotation: Scalar<'g>,
     /// The angle of the parent; `None` for the ground.
     parent: Option<&'d Formula>,
@@ -30,9 +30,8 @@ pub enum Named {
 }
 
 impl<'g> Mechanism<'g, '_> {
-    /// Values that are kept, and where assembly begins to look for the others: at a guess where one is given, else
-    /// where the joints put the bodies when they are walked from the ground ([`PlanarPoses`], [`Poses`]), with the
-    /// nominal parameters.
+    /// Given values, and the guesses of the others: the guess of the model if there is one, else the result of placing
+    /// the bodies by their joints, from the ground on ([`PlanarPoses`], [`Poses`]), with the nominal parameters.
     pub fn start(&self, description: &Description) -> Result<Start, BuildError> {
         let position = self.values_at_start(description, &description.initial, Named::Kept, TimeOrder::Position)?;
         let velocity = self.values_at_start(description, &description.initial, Named::Kept, TimeOrder::Velocity)?;
@@ -122,7 +121,7 @@ impl<'g> Mechanism<'g, '_> {
     }
 
     /// The coordinate that stands for an angle at the start of a child in the plane: its inboard joint's, where the
-    /// angle of the parent is named too or is the ground's. A value that is kept needs one that is kept.
+    /// angle of the parent is named too or is the ground's. A value in `initial` needs one in `initial`.
     pub fn angle_of_inboard_joint<'d>(
         &self,
         description: &'d Description,

@@ -1,7 +1,7 @@
-//! Start values of quantities that are not coordinates of the equations: of points, of parts of angular velocities,
-//! and in joint coordinates of bodies whose place follows from their joint's.
+//! Start values of quantities that are not coordinates of the equations: of points, of parts of angular velocities, and
+//! in joint coordinates of bodies whose position follows from their joint's.
 //!
-//! They are conditions that hold at the start alone, beside the constraints.
+//! They are conditions that hold at the start alone, in addition to the constraints.
 
 use symdiff::Scalar;
 
@@ -14,7 +14,7 @@ use crate::model::{Coordinate, Description, StartValue, TimeOrder};
 use crate::multibody::{BuildError, Context, rotation};
 
 impl<'g> Mechanism<'g, '_> {
-    /// What `initial` gives that no coordinate of the equations takes.
+    /// Conditions for the values in `initial` that are not coordinates of the equations.
     ///
     /// # Errors
     /// A formula with a name that cannot stand in it.
@@ -82,12 +82,12 @@ impl<'g> Mechanism<'g, '_> {
             && self.angle_of_inboard_joint(description, Named::Kept, body, coordinate, order).is_none()
     }
 
-    /// Whether a body's place follows from that of another.
+    /// Whether a body's position follows from that of another.
     pub(super) fn is_child(&self, body: usize) -> bool {
         self.bodies[body].relative_motion.is_some()
     }
 
-    /// A part of a body's angular velocity.
+    /// A condition on a part of a body's angular velocity.
     fn rate_condition(
         &self,
         description: &Description,
@@ -102,7 +102,7 @@ impl<'g> Mechanism<'g, '_> {
         self.condition(name, ResidualUnit::Angle, TimeOrder::Velocity, rate - value)
     }
 
-    /// Of a residual of positions, or of velocities.
+    /// A condition from a residual of positions, or of velocities.
     fn condition(&self, name: String, unit: ResidualUnit, order: TimeOrder, residual: Scalar<'g>) -> StartCondition {
         let position = order == TimeOrder::Position;
         StartCondition {

@@ -27,7 +27,7 @@ impl<'g> Mechanism<'g, '_> {
         Some(if part < 3 { at[part] } else { force[part - 3] })
     }
 
-    /// The mean of the places, by the squares of the forces, and the sum of the forces.
+    /// The mean of the positions, weighted by the squares of the forces, and the sum of the forces.
     fn sum_of_thrusts(&self, thrusts: &[&Thrust<'g>]) -> [Vector<'g>; 2] {
         let g = self.g;
         let force = |thrust: &Thrust<'g>| {

@@ -1,8 +1,8 @@
 //! Flexible bodies by their matrices: inertia.
 //!
 //! R is the orientation of the first node, Ω its angular velocity and a = Rᵀ r̈_1 its acceleration in its own axes. u
-//! are the displacements of [`crate::elements::effects::superelement`], y = (Ω × d_i, 0, 0) what the frame's rotation
-//! adds to the nodes' rates, and m, S_0, J_0, a_k, b_k, c_k those of [`crate::elements::effects::Carried`]:
+//! are the displacements of [`crate::elements::effects::superelement`], y = (Ω × d_i, 0, 0) the contribution of the
+//! frame's rotation to the nodes' rates, and m, S_0, J_0, a_k, b_k, c_k those of [`crate::elements::effects::Carried`]:
 //!
 //! ```text
 //! S = S_0 + Σ a_k u_k,   J = J_0 + 2 Σ c_k u_k,   z = u̇ + y,   π = M z
@@ -48,7 +48,7 @@ impl<'g> Mechanism<'g, '_> {
         })
     }
 
-    /// Generalised inertial forces of all superelements, n: their part of M w, with what depends on velocities.
+    /// Generalised inertial forces of all superelements, n: their part of M w, with velocity-dependent terms.
     pub fn inertia_of_superelements(&self) -> Result<Vec<Scalar<'g>>, BuildError> {
         let mut applied = AppliedForces::new(self.g, self.bodies.len());
         for element in &self.superelements {

@@ -1,6 +1,6 @@
 //! Flexible bodies by their matrices: how they deform, their weight, and how they start.
 //!
-//! What [`super::superelement_inertia`] says of inertia holds of weight: gravity is the acceleration −g,
+//! The weight follows from [`super::superelement_inertia`]: gravity is the acceleration −g,
 //!
 //! ```text
 //! V = −g · (m r_1 + R S)          J
@@ -17,7 +17,7 @@ use crate::elements::effects::superelement::matrices::Matrices;
 use crate::model::{Description, Effect, PointRef, ReducedInertia};
 use crate::multibody::{Body, BuildError, Context, Matrix, Pair, RelativeDisplacement, Vector};
 
-/// A row of M by what stands there of u.
+/// Values by row of M, such as u: the index of each row with its value.
 pub type ByRow<'g> = Vec<(usize, Scalar<'g>)>;
 
 /// u with its first and second derivatives.
@@ -76,13 +76,13 @@ impl<'g> Mechanism<'g, '_> {
         Carrier { outward, along, about }
     }
 
-    /// A node against the first one, without what derivatives there are.
+    /// A node relative to the first one, without derivatives.
     fn end(&self, inertia: &ReducedInertia, node: usize) -> (Pair<'g>, RelativeDisplacement<'g>) {
         let pair = self.pair([inertia.nodes[0], inertia.nodes[node]]);
         (pair, RelativeDisplacement::of(&pair, inertia.matrices.offset_in(self.g, node)))
     }
 
-    /// u by what carries it.
+    /// u with its derivatives, from the motion of the first node.
     pub fn deformation(&self, element: &Superelement, carrier: &Carrier<'g>) -> Deformation<'g> {
         let Superelement { effect, inertia, .. } = element;
         let [omega, alpha] = carrier.about;
@@ -131,7 +131,7 @@ impl<'g> Mechanism<'g, '_> {
         values.map(|value| self.g.number(value)).into()
     }
 
-    /// Forces on u, f_k by the rows: on nodes, with what holds them at the first one, and on modes.
+    /// Adds the forces on u, f_k by row: on nodes, with the opposite ones on the first node's body, and on modes.
     pub fn push_deformation(
         &self,
         applied: &mut AppliedForces<'g>,

@@ -1,4 +1,4 @@
-//! Formulas as expressions over t, q, v, w, λ and the parameters: what each symbol stands for.
+//! Formulas as expressions over t, q, v, w, λ and the parameters: the meaning of each symbol.
 
 use symdiff::{Formula, Scalar};
 
@@ -15,7 +15,7 @@ impl<'g> Mechanism<'g, '_> {
         formula.build(self.g, |name| self.names.known(name, context).map(|symbol| self.observe(symbol)))
     }
 
-    /// A formula of an effect, which may speak of what the effect measures itself.
+    /// A formula of an effect, which may use the quantities that the effect measures itself.
     pub fn own_formula(&self, formula: &Formula, own: &[(Sensor, Scalar<'g>)]) -> Result<Scalar<'g>, BuildError> {
         formula.build(self.g, |name| match self.names.symbol(name) {
             Some(Symbol::Sensor { effect, measure }) if !self.sensors.contains_key(&(effect, measure)) => {

@@ -47,13 +47,13 @@ pub struct System {
     pub massive: Vec<bool>,
     /// M w, n; in joint coordinates with velocity-dependent inertial forces and weights, and with those of beams.
     pub inertia: Vec<Expr>,
-    /// Q(t, q, v, λ), n, with what velocity-dependent inertial forces and weights are not in `inertia`.
+    /// Q(t, q, v, λ), n, with the velocity-dependent inertial forces and weights that are not in `inertia`.
     pub force: Vec<Expr>,
     /// Where it is not positive, no conditional effect (a contact, a stop) acts.
     pub active_condition: Option<Expr>,
-    /// What conditional effects add to Q where it is positive, n; it is in `force`, under that condition.
+    /// Part of Q by conditional effects where it is positive, n; included in `force`, under that condition.
     pub conditional: Vec<Expr>,
-    /// Φ(q, t); as many as there are constraints of positions.
+    /// Φ(q, t), one for each constraint of positions.
     pub constraint: Vec<Expr>,
     /// Ψ(q, v, t), linear in v: velocity constraints that are no derivatives of positions'.
     pub velocity_constraint: Vec<Expr>,
@@ -75,11 +75,11 @@ pub struct System {
     pub modes: ModesRequest,
     /// The model's parameters, where outputs follow from results of the analysis.
     pub declared_parameters: Vec<Parameter>,
-    /// What each effect came to, in file order.
+    /// Properties of each effect, in file order.
     pub effects: Vec<EffectInfo>,
     /// Energies and powers, where they are asked for.
     pub powers: Option<PowerBalance>,
-    /// What the model says and no equation holds.
+    /// Parts of the model that are in no equation.
     pub left_out: Vec<Omission>,
     /// In how many dimensions the bodies move, and why.
     pub space: Space,
@@ -87,7 +87,7 @@ pub struct System {
     pub formulation: FormulationInfo,
 }
 
-/// What an effect came to.
+/// Properties of an effect in the equations.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct EffectInfo {
     /// Name in the model.
@@ -108,7 +108,7 @@ pub struct EffectInfo {
     pub touch: Option<[Expr; 3]>,
 }
 
-/// Surfaces of which what lies within them has no nearest side.
+/// Surfaces that overlap to a limited depth only: points inside have no nearest side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Overlap {
     /// m
@@ -117,7 +117,7 @@ pub struct Overlap {
     pub deepest: Expr,
 }
 
-/// Something that the model says and no equation holds.
+/// A part of the model that is in no equation.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Omission {
     /// The part of the model, as it is called in messages.
@@ -179,7 +179,7 @@ pub struct CoordinateInfo {
     /// Typical size: 1 for an angle or an Euler parameter, the model's length for a position. Newton's tolerance is
     /// relative to it.
     pub scale: f64,
-    /// Whether it tells of a rotation (an angle, an Euler parameter) rather than of a position.
+    /// Whether it describes a rotation (an angle, an Euler parameter) rather than a position.
     pub is_angle: bool,
     /// Whether its velocity is a state, and the coordinate itself stands in no equation.
     pub is_state: bool,
@@ -214,7 +214,7 @@ pub struct OutputInfo {
     pub name: String,
     /// Its SI unit; empty where none is known.
     pub unit: String,
-    /// What kind of quantity it is; `None` where unknown.
+    /// Kind of the quantity; `None` if unknown.
     pub dimension: Option<Dimension>,
     /// Its value.
     pub expr: Expr,
@@ -232,19 +232,19 @@ impl OutputInfo {
 /// Known values at the start; expressions over the parameters.
 #[derive(Clone, Debug)]
 pub struct Start {
-    /// Positions that are kept, n; `None` where assembly finds them.
+    /// Given positions, n; `None` where assembly finds them.
     pub position: Vec<Option<Expr>>,
-    /// Velocities that are kept, n; of Euler parameters over the positions too.
+    /// Given velocities, n; those of Euler parameters depend on positions, too.
     pub velocity: Vec<Option<Expr>>,
-    /// Where assembly begins to look, n.
+    /// Guesses from which assembly starts, n.
     pub guess: Vec<Expr>,
-    /// Whether the velocities that are kept fulfil Ψ = 0, so that none follows from it.
+    /// Whether the given velocities fulfil Ψ = 0, so that none follows from it.
     pub fulfils_velocity_constraints: bool,
-    /// What must hold then besides the constraints.
+    /// Conditions that hold at the start in addition to the constraints.
     pub conditions: Vec<StartCondition>,
-    /// Whether it is the equilibrium to which all this is near.
+    /// Whether it is the equilibrium near these values.
     pub at_equilibrium: bool,
-    /// What decides where all this leaves the start open; `None` where nothing does.
+    /// Criterion that determines what the values and conditions leave open; `None` if nothing does.
     pub nearest: Option<Arc<Nearest>>,
 }
 
@@ -257,7 +257,7 @@ pub struct Nearest {
     pub distances: Vec<Distance>,
 }
 
-/// Ψ(q, t), a joint's coordinate or that of a body which no joint carries, from where it is at rest.
+/// Ψ(q, t), distance of a joint's coordinate, or of that of a body which no joint carries, from its reference.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Distance {
     /// E.g. `elbow.angle`.
@@ -373,7 +373,7 @@ impl System {
         symbols.iter().any(|symbol| used.binary_search(symbol).is_ok())
     }
 
-    /// They are noted as left out.
+    /// Notes them as omissions.
     pub(super) fn note_unused_parameters(&mut self) {
         for number in self.unused_parameters() {
             let why = "nothing depends on it".to_owned();

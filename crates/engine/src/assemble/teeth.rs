@@ -1,4 +1,4 @@
-//! Forces between teeth, in place of the torques of their constraints' multipliers.
+//! Forces between teeth, instead of the torques of their constraints' multipliers.
 //!
 //! They do no work beyond those, so the motion does not depend on them: they change the loads of bearings, and friction
 //! with that. They are written down only where a reaction is asked for.
@@ -21,9 +21,9 @@ pub fn reactions_are_asked(questions: &Questions) -> bool {
 }
 
 impl<'g> Mechanism<'g, '_> {
-    /// Adds the forces of teeth between bearings of the trees (`of_trees`), or the others. Inboard joints feel those
-    /// in addition to their coordinates' forces, along which no reaction is counted; where bearings are constraints,
-    /// the force at the pitch point takes the place of the multiplier's torques.
+    /// Adds the forces of teeth between bearings of the trees (`of_trees`), or the others. Inboard joints feel those in
+    /// addition to their coordinates' forces, along which no reaction is counted; where bearings are constraints, the
+    /// force at the pitch point replaces the multiplier's torques.
     pub fn add_tooth_forces(&self, applied: &mut AppliedForces<'g>, of_trees: bool) -> Result<(), BuildError> {
         for tooth in &self.teeth {
             if tooth.instead.iter().all(|(on, _)| self.tree.contains(on.joint)) != of_trees {

@@ -1,6 +1,6 @@
 //! Which bodies are children, and of which.
 //!
-//! In joint coordinates a child has none of its own: its place follows from that of its parent and from the
+//! In joint coordinates a child has none of its own: its position follows from that of its parent and from the
 //! coordinates of its inboard joint, the one between them. The inboard joints form trees, whose roots are the ground
 //! and bodies with coordinates of their own; the joints that are left close loops, by constraints. Bodies that are
 //! merged are children of one of them in absolute coordinates too.
@@ -139,7 +139,7 @@ impl Tree {
         !self.closing(description).is_empty()
     }
 
-    /// The inboard joints between two bodies, those of merged bodies left out.
+    /// The inboard joints between two bodies, without those of merged bodies.
     pub fn joints_between(&self, bodies: [usize; 2]) -> Vec<usize> {
         let [mut first, second] = bodies.map(|body| self.joints_to_root(body));
         let (only_second, shared): (Vec<_>, Vec<_>) = second.into_iter().partition(|joint| !first.contains(joint));

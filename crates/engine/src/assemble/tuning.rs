@@ -5,7 +5,7 @@ use symdiff::constants::tuning;
 tuning! {
     /// The equations of motion.
     "assemble" {
-        /// Links of a tree, on average, from which M is left out: it has an entry for every pair of them.
+        /// Links of a tree, on average, from which M is omitted: it has an entry for every pair of them.
         links_without_mass_matrix: usize = 48, moves "instructions of long chains";
         /// Entries of a rotation nearer than this to 0 or ±1 are so but for rounding.
         rotation_rounding: f64 = 1e-15, moves "expressions of turned joints";

@@ -38,7 +38,7 @@ fn weights_of_beams_have_their_potential() {
     }
 }
 
-/// M w and what depends on velocities of a beam is d/dt ∂T/∂v − ∂T/∂q, and M its slope by w.
+/// M w with the velocity-dependent terms of a beam is d/dt ∂T/∂v − ∂T/∂q, and M its slope by w.
 #[test]
 fn inertia_of_beams_agrees_with_lagrange() {
     let mut m = two_bodies();

@@ -1,4 +1,4 @@
-//! What pulls, touches, meshes and presses.
+//! Effects that pull, touch, mesh and press.
 
 use super::model::{formula, pair};
 use super::numbers::State;
@@ -46,8 +46,8 @@ fn touching(between: [PointRef; 2]) -> Contact {
     }
 }
 
-/// What pulls, touches, meshes and presses without loss: its power is minus the rate of its energy. Radii and lengths
-/// are such that it acts wherever the bodies are, and nowhere just at its corner.
+/// Effects that pull, touch, mesh and press without loss: the power is minus the rate of the energy. Radii and lengths
+/// are such that they act wherever the bodies are, and nowhere just at their corner.
 #[test]
 fn what_takes_nothing_has_its_potential() {
     let m = two_bodies();

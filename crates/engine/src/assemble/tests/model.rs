@@ -103,12 +103,12 @@ impl Model {
         });
     }
 
-    /// Of the last body.
+    /// Sets the centre of mass of the last body.
     pub fn center_of_mass(&mut self, x: &str, y: &str) {
         self.0.mechanism_mut().bodies.last_mut().unwrap().center_of_mass = Some(pair(x, y));
     }
 
-    /// A coordinate of the last body.
+    /// Prescribes a coordinate of the last body.
     pub fn hold(&mut self, letter: char, value: &str) {
         self.0.mechanism_mut().bodies.last_mut().unwrap().prescribed.push((coordinates(letter)[0], formula(value)));
     }

@@ -118,7 +118,7 @@ pub fn time_derivative(system: &mut System, of: Expr) -> Expr {
     total
 }
 
-/// Sets w and λ to what the equations of motion and the twice differentiated constraints say.
+/// Sets w and λ by solving the equations of motion and the twice differentiated constraints.
 pub fn solve_motion(system: &mut System, state: &mut State) {
     let (n, m) = (system.q.len(), system.lambda.len());
     let mut matrix = DMatrix::zeros(n + m, n + m);

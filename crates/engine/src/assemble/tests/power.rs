@@ -1,4 +1,4 @@
-//! Two bodies, and the power of what acts between them.
+//! Two bodies, and the power of the effects between them.
 
 use super::model::Model;
 use super::numbers::{State, output};
@@ -21,7 +21,7 @@ pub fn two_bodies() -> Model {
     m
 }
 
-/// Σ Q v of the effects alone: without what the same bodies feel by inertia.
+/// Σ Q v of the effects alone, without the inertial forces of the same bodies.
 pub fn power(with: &System, state: &State) -> f64 {
     let inertial = two_bodies().build();
     let force = state.values(&with.graph, &with.force);

@@ -82,7 +82,7 @@ fn velocity_and_acceleration_are_the_derivatives_of_position() {
     }
 }
 
-/// M w − Q is d/dt ∂T/∂v − ∂T/∂q but for what acts along p, where the multiplier of pᵀp = 1 is; M is positive definite.
+/// M w − Q is d/dt ∂T/∂v − ∂T/∂q except along p, where the multiplier of pᵀp = 1 acts; M is positive definite.
 #[test]
 fn inertia_agrees_with_lagrange() {
     let mut m = Model::spatial();
@@ -170,7 +170,7 @@ fn rotation(p: &[f64]) -> UnitQuaternion<f64> {
     UnitQuaternion::from_quaternion(Quaternion::new(p[0], p[1], p[2], p[3]))
 }
 
-/// A state in which the joint is closed, b being put where it has to be.
+/// A state in which the joint is closed, with b placed accordingly.
 fn closed_state(system: &System, kind: &JointKind) -> State {
     let mut state = on_sphere(system, 7);
     let q = state.list(&system.q);
@@ -260,7 +260,7 @@ fn reactions_are_what_the_multipliers_do() {
     }
 }
 
-/// Σ Q v of the effects alone: without what the same bodies feel by inertia.
+/// Σ Q v of the effects alone, without the inertial forces of the same bodies.
 pub fn power(with: &System, state: &State) -> f64 {
     let inertial = two_lumps().build();
     let named: std::collections::HashMap<&str, f64> =

@@ -40,7 +40,7 @@ fn the_slider_crank_is_guessed_closed() {
     assert_close(guess[6], 0.71, 1e-15);
 }
 
-/// All of its links at angle 0 would be a singular place to begin.
+/// With all of its links at angle 0 the guess would be singular.
 #[test]
 fn a_four_bar_linkage_is_guessed_closed() {
     for rocker_first in [false, true] {

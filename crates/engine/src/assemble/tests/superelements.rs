@@ -47,7 +47,7 @@ fn between_frames(is_spatial: bool, stiffness: &str) -> Model {
 }
 
 fn state_of(system: &System, is_spatial: bool, seed: u64) -> State {
-    // Three bodies of seven coordinates, then the modes: `on_sphere` looks at whole bodies.
+    // Three bodies of seven coordinates, then the modes: `on_sphere` handles whole bodies only.
     if is_spatial { spatial::on_sphere(system, seed) } else { State::random(system, seed) }
 }
 
@@ -72,8 +72,7 @@ fn forces_have_their_potential() {
     }
 }
 
-/// M w and what depends on velocities is d/dt ∂T/∂v − ∂T/∂q, but for what acts along Euler parameters, and T is ½ vᵀ M
-/// v.
+/// M w with velocity-dependent terms is d/dt ∂T/∂v − ∂T/∂q except along Euler parameters, and T is ½ vᵀ M v.
 #[test]
 fn inertia_agrees_with_lagrange() {
     for is_spatial in [false, true] {
