@@ -34,7 +34,7 @@ fn runs(schedule: &Schedule) -> Vec<Vec<Run>> {
     (0..schedule.rows).map(of_row).collect()
 }
 
-/// What the runtime calls the model's parts.
+/// Macros by which the runtime names the sizes and registers of the model.
 pub(super) fn macros(code: &Code) -> String {
     let Code { simulator, schedule, prefix, method, .. } = code;
     let program = &simulator.program;
@@ -165,7 +165,7 @@ pub(super) fn tables(code: &Code, start: &Tile) -> String {
     text
 }
 
-/// Of the steps of HHT-I3.
+/// Tables of the steps of HHT-I3.
 fn of_steps(code: &Code) -> String {
     let program = &code.simulator.program;
     let mut text = String::from("typedef struct { int pivot; double largest; int mode, inactive; } watched_pivot;\n");

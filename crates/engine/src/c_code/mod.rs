@@ -1,4 +1,4 @@
-//! A compiled mechanism as C99: the programs of its steps, the nominal start, and what integrates them (`runtime`).
+//! A compiled mechanism as C99: the programs of its steps, the nominal start, and the integration (`runtime`).
 //!
 //! The code repeats the nominal sample, by HHT-I3 under fixed steps or a tolerance, on one level or several, or by the
 //! explicit method. A step in a singular configuration has a solve of its own where equations are few.
@@ -67,7 +67,7 @@ pub enum NoCode {
 /// Options of a model's code.
 #[derive(Clone, Copy, Debug)]
 pub struct CodeRequest<'r> {
-    /// Name of the files and, where it is no name of C, of the functions with underscores.
+    /// Name of the files and, with underscores where C does not allow its letters, of the functions.
     pub name: &'r str,
     /// Parameters of forces that may change during the motion.
     pub inputs: &'r [String],
@@ -79,12 +79,12 @@ pub struct CodeRequest<'r> {
 struct Code<'c> {
     simulator: &'c Simulator,
     schedule: &'c Schedule,
-    /// Of its functions.
+    /// Prefix of its functions.
     prefix: &'c str,
     /// Names and units of the outputs.
     outputs: &'c [(&'c str, &'c str)],
     method: Method<'c>,
-    /// Number of parameters that its start may have other values of.
+    /// Number of parameters whose values may be changed at the start.
     parameters: usize,
 }
 
@@ -98,8 +98,8 @@ impl Code<'_> {
 /// Writes a mechanism under the steps of a run.
 ///
 /// # Errors
-/// Where the runtime lacks what its analysis or its steps take, where the nominal sample has no start, and where an
-/// input is none.
+/// If the runtime lacks something that the analysis or the steps need, if the nominal sample has no start, and if a
+/// parameter of `inputs` cannot be an input.
 pub fn c_code(simulator: &Simulator, steps: Steps, request: CodeRequest) -> Result<CModel, NoCode> {
     let (system, schedule) = (&simulator.system, steps.schedule);
     let refused = [

@@ -1,4 +1,4 @@
-//! Tables beside those of the steps of HHT-I3: of the start, closed rows, switches, instants and the explicit method.
+//! Tables besides those of the steps of HHT-I3: of the start, closed rows, switches, instants and the explicit method.
 
 use std::fmt::Write;
 

@@ -14,7 +14,7 @@ pub(super) struct AtSample<'s> {
 }
 
 impl<'s> AtSample<'s> {
-    /// Of these inputs, whose registers have the values of the sample.
+    /// Values by the symbols of these inputs, whose registers have the values of the sample.
     pub fn new(inputs: &[Input], sample: &'s [f64]) -> Self {
         Self { register_of: inputs.iter().map(|input| (input.symbol, input.register as usize)).collect(), sample }
     }
@@ -24,7 +24,7 @@ impl<'s> AtSample<'s> {
         graph.evaluate(exprs, |symbol| self.sample[self.register_of[&symbol]])
     }
 
-    /// The diagonal of M. Where M is left out, it follows from the inertial forces, which are linear in w.
+    /// The diagonal of M. If M is omitted, it follows from the inertial forces, which are linear in w.
     pub fn masses(&self, system: &System) -> Vec<f64> {
         if system.is_mass_left_out() {
             return self.masses_of_long_trees(system);

@@ -102,7 +102,7 @@ impl PivotChoice<'_> {
 
 /// Frozen factors in one version or two; the corrections refer to them by symbols of their own.
 pub(super) struct Elimination {
-    /// The values that the factorisation computes, and the registers in which they are kept.
+    /// The values that the factorisation computes, and the registers in which they are stored.
     pub frozen: Vec<(Expr, Option<u32>)>,
     /// Values that only one version needs.
     pub guards: FxHashMap<Expr, Guard>,

@@ -1,4 +1,4 @@
-//! The equations as a list of operations for a certificate: what a checker needs to know of a mechanism.
+//! The equations as a list of operations for a certificate: the facts of a mechanism that a checker needs.
 
 use rustc_hash::FxHashMap;
 use symdiff::{Expr, Graph};
@@ -7,18 +7,18 @@ use super::start_equations::StartEquations;
 use crate::assemble::System;
 use crate::certificate::{self, Node};
 
-/// What determines a coordinate's position, or its velocity, at the start.
+/// Source of a coordinate's position, or of its velocity, at the start.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum AtStart {
     /// A given value.
     Given(Expr),
     /// A number.
     Number(f64),
-    /// The closure, with all others of which that is so.
+    /// The closure, together with all other coordinates that have this source.
     Closure,
 }
 
-/// The list. `start` says of each coordinate what determines its position, and its velocity.
+/// The list. `start` gives the source of each coordinate's position, and of its velocity.
 pub fn list_equations(system: &System, start: &[Vec<AtStart>; 2]) -> certificate::Equations {
     let mut graph = system.graph.clone();
     let StartEquations { motion, closure, closure_rate, rate_of_rate, .. } = StartEquations::new(system, &mut graph);

@@ -26,7 +26,7 @@ pub struct EquationsProgram {
     pub motion_by: [Entries; 4],
     /// Φ_q after [`jacobian`](Self::jacobian).
     pub constraint_by_position: Entries,
-    /// Registers of what holds for the start's positions, and for its velocities, after [`closure`](Self::closure).
+    /// Registers of the closure of the start's positions, and of its velocities, after [`closure`](Self::closure).
     pub closure: [Vec<usize>; 2],
     /// Derivatives of these by q, and by v, after [`closure_jacobian`](Self::closure_jacobian).
     pub closure_by: [Entries; 2],
@@ -37,13 +37,12 @@ pub struct EquationsProgram {
     /// (coordinate, register) of the positions, and of the velocities, that are given at the start, after
     /// [`given`](Self::given).
     pub kept: [Vec<(usize, usize)>; 2],
-    /// Numbers at which assembly begins to look for positions that are not given; `None` where these depend on
-    /// parameters.
+    /// Guesses of positions that are not given, as numbers; `None` where these depend on parameters.
     pub guess: Vec<Option<f64>>,
-    /// Whether velocities of zero fulfil all that holds for them, and none is given.
+    /// Whether velocities of zero fulfil all their conditions, and none is given.
     pub can_rest: bool,
-    /// What conditions and signs in the equations are of, as far as it changes with the motion: registers after
-    /// `conditions`. Derivatives do not show where these jump.
+    /// Arguments of conditions and signs in the equations that change with the motion: registers after `conditions`.
+    /// Derivatives do not show where these jump.
     pub conditions: Vec<usize>,
     /// Whether a function stands in the equations that has knots or kinks.
     pub has_knots: bool,
@@ -102,7 +101,7 @@ impl EquationsProgram {
         &self.lowered.kernels[CLOSURE_JACOBIAN]
     }
 
-    /// What conditions and signs are of.
+    /// Arguments of conditions and signs.
     pub fn conditions(&self) -> &Tape {
         &self.lowered.kernels[CONDITIONS]
     }

@@ -4,7 +4,7 @@ use symdiff::{Expr, Graph, SparseMatrix};
 
 use crate::assemble::{ConditionId, ConstraintId, CoordinateId, System};
 
-/// A row of the closure: what positions have to fulfil.
+/// A row of the closure: an equation that positions have to fulfil.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ClosureRow {
     /// A constraint.
@@ -16,14 +16,14 @@ pub enum ClosureRow {
 /// An equation of a start or of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Equation {
-    /// Of the motion, by its coordinate.
+    /// An equation of motion, by its coordinate.
     Motion(CoordinateId),
-    /// Of the closure.
+    /// A row of the closure.
     Closure(ClosureRow),
 }
 
 impl Equation {
-    /// Of the rows of a system of n coordinates: the equations of motion, then the constraints.
+    /// Returns the equation of a row of a system of n coordinates: the equations of motion, then the constraints.
     pub fn of_row(row: usize, n: usize) -> Self {
         match row.checked_sub(n) {
             None => Self::Motion(CoordinateId::new(row)),

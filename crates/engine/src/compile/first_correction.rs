@@ -1,5 +1,5 @@
-//! The first correction after a factorisation: both are at one iterate, so that what the factorisation has computed is
-//! kept for the correction, sines and cosines and the entries of the constraint Jacobian above all.
+//! The first correction after a factorisation: both are at one iterate, so that the correction uses the values that the
+//! factorisation has computed, sines and cosines and the entries of the constraint Jacobian above all.
 
 use rustc_hash::{FxHashMap, FxHashSet};
 use symdiff::{Binary, Expr, Graph, Guard, Input, Node, Stages};
@@ -41,7 +41,7 @@ pub(super) fn first_correction(
     values.into_iter().zip(correct).map(|(value, &(_, register))| (value, register)).collect()
 }
 
-/// What the factorisation computes of the iteration's values in every lane.
+/// Values of the iteration that the factorisation computes in every lane.
 fn always_computed(
     graph: &Graph,
     stages: &Stages,

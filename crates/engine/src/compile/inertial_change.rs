@@ -1,4 +1,4 @@
-//! M(q₊) (a₊ − a): what the change of the algorithmic accelerations does to the equations of motion.
+//! M(q₊) (a₊ − a): the part of the equations of motion due to the change of the algorithmic accelerations.
 
 use rustc_hash::FxHashMap;
 use symdiff::{Expr, Graph};

@@ -35,7 +35,7 @@ pub struct Layout {
 }
 
 impl Layout {
-    /// Of a system.
+    /// Returns the layout of a system.
     pub fn of(system: &System) -> Self {
         let (n, m) = (system.q.len(), system.lambda.len());
         let mut next = 0;

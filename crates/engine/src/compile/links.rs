@@ -48,17 +48,17 @@ pub(super) fn elimination(system: &System, has_redundant: bool) -> LinkEliminati
 /// A value of a link.
 #[derive(Clone, Copy, Debug)]
 struct Value {
-    /// In the equations.
+    /// Its expression in the equations.
     value: Expr,
-    /// In its place in their derivatives.
+    /// Its symbol in their derivatives.
     symbol: Expr,
     /// Its expression over other values' symbols.
     definition: Expr,
-    /// Whose it is.
+    /// Index of its link.
     link: usize,
 }
 
-/// Unknowns of a derivative: symbols, the first one's column, and by what the derivatives are multiplied.
+/// Unknowns of a derivative: symbols, the first one's column, and the factor of the derivatives.
 pub(super) type Unknowns<'s> = (&'s [Expr], usize, Option<Expr>);
 
 /// Equations, by the values of links.
@@ -70,7 +70,7 @@ pub(super) struct Linked {
 }
 
 impl Linked {
-    /// Of `rows`, which depend on the unknowns `by`.
+    /// Writes `rows`, which depend on the unknowns `by`, by the values of links.
     pub fn new(system: &System, graph: &mut Graph, rows: &[Expr], by: &[&[Expr]]) -> Self {
         let mut unknown: FxHashSet<Expr> = by.iter().copied().flatten().copied().collect();
         let mut depends = FxHashSet::default();
@@ -175,7 +175,7 @@ pub(super) struct MassOfLinks {
 }
 
 impl MassOfLinks {
-    /// Of a system.
+    /// Differentiates the inertial forces of a system.
     pub fn new(system: &System, graph: &mut Graph) -> Self {
         let size = system.q.len() + system.lambda.len();
         let linked = Linked::new(system, graph, &system.inertia, &[&system.w]);

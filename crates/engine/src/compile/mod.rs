@@ -5,10 +5,10 @@
 //! - `newton_matrix`: residual, Newton matrix and new state of a step; `links`: derivatives of deep trees, link by
 //!   link;
 //! - `sparse_lu`: its factorisation, as expressions; `elimination`: frozen factors in one version or two;
-//! - `step` → `program`: the tapes of a step, `first_correction` what a factorisation spares the correction after it;
+//! - `step` → `program`: the tapes of a step, `first_correction` the correction with the values of a factorisation;
 //!   `start`: the tapes of a consistent start (`start_equations`, `start_program`, `start_factors`), `at_sample` the
-//!   numbers that it is planned by, `nearest` what decides where it is open; `rounding`: how exactly constraints can
-//!   be computed; `equation_tapes`: the equations alone, `equation_list` the same for certificates;
+//!   numbers that it is planned by, `nearest` the least squares of an open start; `rounding`: how exactly constraints
+//!   can be computed; `equation_tapes`: the equations alone, `equation_list` the same for certificates;
 //! - `powers`: the balance of power as outputs;
 //! - `switches`: where the equations switch, as at contacts; `combinations`: numbers through which several parameters
 //!   act alone;

@@ -5,8 +5,8 @@
 //!                                    [ Φ_q                       −ε   ] [μ ] = − [ Φ                ]
 //! ```
 //!
-//! Ψ are the distances ([`crate::assemble::Distance`]), for velocities Ψ̇. η D only keeps each correction small in
-//! what no distance depends on: it is no part of the right side, so the solution does not depend on it.
+//! Ψ are the distances ([`crate::assemble::Distance`]), for velocities Ψ̇. η D only keeps each correction small along
+//! directions that no distance depends on: it is no part of the right side, so the solution does not depend on it.
 
 use symdiff::{Expr, Graph};
 
@@ -14,7 +14,7 @@ use super::equations::time_derivative;
 use crate::assemble::{Distance, System};
 use crate::compile::tuning::TUNING;
 
-/// What given values and constraints leave open.
+/// Parts of the start that given values and constraints leave open.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct OpenStart {
     /// Positions.

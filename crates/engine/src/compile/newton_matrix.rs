@@ -11,10 +11,10 @@
 //! β = (1−α)²/4,   γ = 1/2 − α
 //! ```
 //!
-//! Other schemes have other numbers in the same places ([`Coefficients`]): a₊ = g w₊ + e w − d a. With x = w₊:
-//! q₊ = q̂ + b x and v₊ = v̂ + c x, b = βh²g, c = γhg (HHT: g = 1+α), where q̂ and v̂ do not change in the iteration.
-//! The constraint is divided by b so that the matrix does not degenerate as h → 0; a scheme of index 2 has
-//! Φ̇(q₊,v₊,t₊)/c = 0 in its place. Velocity constraints are Ψ(q₊,v₊,t₊)/c = 0 in each of them.
+//! Other schemes have other numbers in the same equations ([`Coefficients`]): a₊ = g w₊ + e w − d a. With x = w₊: q₊ =
+//! q̂ + b x and v₊ = v̂ + c x, b = βh²g, c = γhg (HHT: g = 1+α), where q̂ and v̂ do not change in the iteration. The
+//! constraint is divided by b so that the matrix does not degenerate as h → 0; a scheme of index 2 has Φ̇(q₊,v₊,t₊)/c =
+//! 0 instead. Velocity constraints are Ψ(q₊,v₊,t₊)/c = 0 in each of them.
 
 use rustc_hash::FxHashMap;
 use symdiff::{Expr, Graph, Input, SparseMatrix};
@@ -54,12 +54,12 @@ pub struct NewtonSystem {
     pub acceleration: Vec<Expr>,
     /// M(q₊) (a₊ − a), n, from which local errors are estimated.
     pub inertial_change: Vec<Expr>,
-    /// Where it is not positive, no conditional effect is active; `None` where there is no conditional effect.
+    /// Where it is not positive, no conditional effect is active; `None` without conditional effects.
     pub active_condition: Option<Expr>,
 }
 
 impl NewtonSystem {
-    /// The same with all expressions, given together, replaced by as many others.
+    /// Replaces all expressions, given together, by the same number of others.
     pub fn map(mut self, replace: impl FnOnce(&[Expr]) -> Vec<Expr>) -> Self {
         let entries = self.matrix.rows.iter_mut().flatten().map(|entry| &mut entry.1);
         let vectors = [
@@ -126,7 +126,7 @@ impl StepSymbols {
     }
 }
 
-/// The gains of a step: what a change of w₊ does to q₊ (b) and to v₊ (c).
+/// The gains of a step: derivatives of q₊ (b) and of v₊ (c) by w₊.
 #[derive(Clone, Copy)]
 struct Gains {
     h2: Expr,

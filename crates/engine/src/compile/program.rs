@@ -43,7 +43,7 @@ impl FactorMode {
 /// The pivots of one version of the factors.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WatchedPivots {
-    /// Which lanes use the version; `None` for all, where there is one version.
+    /// Lanes that use the version; `None` for all, if there is one version.
     pub mode: Option<FactorMode>,
     /// The version's pivots that can change.
     pub pivots: Vec<WatchedPivot>,
@@ -67,7 +67,7 @@ pub struct Program {
     pub size: usize,
     /// Registers of the residual after [`Program::matrix`], n + m.
     pub residual: Vec<usize>,
-    /// What rounding makes of each constraint near the pivot samples, m, in the constraint's unit; zero of a scheme of
+    /// Rounding error of each constraint near the pivot samples, m, in the constraint's unit; zero for a scheme of
     /// index 2.
     pub rounding: Vec<f64>,
     /// Registers of the multipliers of redundant constraints: undetermined reactions, which are taken as zero.
@@ -103,7 +103,7 @@ impl Program {
         &self.lowered.stages[1]
     }
 
-    /// Once a step, after `time` was set to t₊: what the iteration does not change.
+    /// Once a step, after `time` was set to t₊: the values that the iteration does not change.
     pub fn step(&self) -> &Tape {
         &self.lowered.stages[2]
     }

@@ -3,9 +3,9 @@
 use rustc_hash::FxHashMap;
 use symdiff::{Binary, Expr, Graph, Node, Unary};
 
-/// Running error of each expression, in its own unit: a bound of what rounding makes of it where its symbols are
-/// exact, but for products of errors (Higham, *Accuracy and Stability of Numerical Algorithms*, 2nd ed., ch. 3.3).
-/// Functions of the standard library count as exact to their last place.
+/// Running error of each expression, in its own unit: a bound of its rounding error for exact symbols, except for
+/// products of errors (Higham, *Accuracy and Stability of Numerical Algorithms*, 2nd ed., ch. 3.3). Functions of the
+/// standard library count as exact to their last place.
 pub fn running_errors(graph: &Graph, exprs: &[Expr], value_of: impl FnMut(Expr) -> f64) -> Vec<f64> {
     let nodes = graph.reachable(exprs);
     let values = graph.evaluate(&nodes, value_of);
@@ -21,7 +21,7 @@ pub fn running_errors(graph: &Graph, exprs: &[Expr], value_of: impl FnMut(Expr) 
     exprs.iter().map(|expr| errors[expr]).collect()
 }
 
-/// What the errors of a node's children make of it.
+/// Error of a node due to the errors of its children.
 fn inherited(node: Node, values: &FxHashMap<Expr, f64>, errors: &FxHashMap<Expr, f64>) -> f64 {
     match node {
         Node::Binary(Binary::Mul, a, b) => values[&a].abs() * errors[&b] + values[&b].abs() * errors[&a],

@@ -10,15 +10,14 @@
 //!
 //! Velocity constraints Ψ are below Φ̇ and Φ̈, with Ψ_v below Φ_q; positions know nothing of them.
 //!
-//! Velocities of a motion, which nothing gives, are corrected with M in place of D: by what constraint forces do to
-//! them.
+//! Velocities of a motion, which nothing gives, are corrected with M instead of D: as by impulses of constraint forces.
 //!
 //! Q_λ is nonzero where friction depends on reactions; the corrections are then Newton's.
 //!
 //! A massless coordinate has no pivot in M. Where a constraint k defines it by massive ones, and its derivative by it
 //! cannot vanish (the angle of a joint), the two are eliminated as a pair, without ε. Where it may vanish, both sides
-//! are augmented: μ Φ_kᵀ Φ_k is added to M and μ Φ_kᵀ Φ̈_k to the equations of motion, which changes nothing where Φ̈
-//! = 0, but couples what k couples.
+//! are augmented: μ Φ_kᵀ Φ_k is added to M and μ Φ_kᵀ Φ̈_k to the equations of motion, which changes nothing where Φ̈ =
+//! 0, but couples the coordinates that k couples.
 //!
 //! Where positions or velocities are left open, D gives way to the least squares of [`super::nearest`].
 //!

@@ -1,5 +1,5 @@
-//! The equations that hold at the start — constraints, their rates, and the conditions of the start alone — and what
-//! their rows are.
+//! The equations that hold at the start — constraints, their rates, and the conditions of the start alone — and the
+//! meaning of their rows.
 
 use symdiff::{Expr, Graph, SparseMatrix};
 
@@ -10,12 +10,12 @@ use super::layout::Layout;
 use super::sparse_lu::{NoFactors, Numbers};
 use crate::assemble::{ConditionId, ConstraintId, CoordinateId, StartCondition, System};
 
-/// What remains of a row of the closure.
+/// Residual of a row of the closure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Residual {
-    /// Of which row.
+    /// The row.
     pub row: ClosureRow,
-    /// Where it is.
+    /// Its register.
     pub register: usize,
 }
 

@@ -1,4 +1,4 @@
-//! Factors of the start's corrections, kept for those that have the same matrix.
+//! Factors of the start's corrections, shared by those that have the same matrix.
 
 use symdiff::SparseMatrix;
 

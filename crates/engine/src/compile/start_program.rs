@@ -119,7 +119,7 @@ impl StartProgram {
         &self.lowered.kernels[OBSERVE]
     }
 
-    /// What the states become that change at instants.
+    /// New values of the states that change at instants.
     pub fn sampling(&self) -> &Tape {
         &self.lowered.kernels[SAMPLING]
     }

@@ -193,8 +193,8 @@ fn versions(
     (versions[0].0 != versions[1].0).then_some(versions)
 }
 
-/// By coordinate, the first of those that M couples it with: the coordinates of a body, or of a tree of bodies. Where
-/// M is left out, all are one block.
+/// By coordinate, the first of those that M couples it with: the coordinates of a body, or of a tree of bodies. If M is
+/// omitted, all are one block.
 fn mass_blocks(system: &System) -> Vec<usize> {
     if system.is_mass_left_out() {
         return vec![0; system.q.len()];
@@ -241,7 +241,7 @@ fn registers(inputs: &[Input]) -> FxHashMap<Expr, usize> {
     inputs.iter().map(|input| (input.symbol, input.register as usize)).collect()
 }
 
-/// What rounding makes of each constraint, the largest of the pivot samples.
+/// Rounding error of each constraint, the largest of the pivot samples.
 fn rounding_of_constraints(
     system: &System,
     inputs: &[Input],

@@ -30,7 +30,7 @@ pub struct Switch {
     pub rate: Option<usize>,
     /// Places of switches of whole numbers at which the value jumps itself.
     pub jumps_with: Vec<usize>,
-    /// The term of the system's equations that jumps or has a kink there; of a condition, the condition.
+    /// Indices of the switches at whole numbers at which the value itself jumps.
     pub of: Expr,
     /// Whether its value depends on velocities.
     pub of_velocity: bool,
@@ -115,7 +115,7 @@ fn compile_values(
     Some(SwitchProgram { layout, switches, lowered })
 }
 
-/// The arguments that change during a motion, each once, and of each the term that has it and the places of those at
+/// The arguments that change during a motion, each once, with the term that contains it and the indices of those at
 /// which it jumps.
 fn arguments(system: &System, graph: &mut Graph) -> (Vec<Expr>, Vec<(Expr, Vec<usize>)>) {
     let constraints = system.named_constraints().map(|(value, _)| value);
@@ -155,7 +155,7 @@ fn arguments(system: &System, graph: &mut Graph) -> (Vec<Expr>, Vec<(Expr, Vec<u
     (found, terms)
 }
 
-/// What the roots are made of but for conditions, of which the sign alone counts: a kink in one is none of theirs.
+/// Expressions whose values are in the roots. Of a condition the sign alone counts: a kink in it is no kink of a root.
 fn reachable_values(graph: &Graph, roots: &[Expr]) -> FxHashSet<Expr> {
     let mut found = FxHashSet::default();
     let mut rest = roots.to_vec();

@@ -1,4 +1,4 @@
-//! What all programs of a system share: tapes over one memory, of which the first stage depends on parameters only.
+//! Common traits of all programs of a system: tapes over one memory; their first stage depends on parameters only.
 
 use symdiff::{Lowered, Tape};
 
@@ -17,7 +17,7 @@ pub trait Tapes {
         &self.lowered().constants
     }
 
-    /// Once a sample, or for a box of parameters: what depends on parameters only.
+    /// Once a sample, or for a box of parameters: the values that depend on parameters only.
     fn sample(&self) -> &Tape {
         &self.lowered().stages[0]
     }

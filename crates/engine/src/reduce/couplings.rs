@@ -122,7 +122,7 @@ pub struct Couplings {
 }
 
 impl Couplings {
-    /// Of a description; `merged`: by joint, whether its bodies move as one.
+    /// The couplings of a description; `merged`: by joint, whether its bodies move as one.
     pub fn of(description: &Description, merged: &[bool]) -> Self {
         let joint =
             |Joint { kind, .. }: &Joint| Dependencies::by_part(description, kind.formulas(), kind.clone().references());

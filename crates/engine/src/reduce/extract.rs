@@ -15,7 +15,7 @@ struct Kept {
     parameters: Vec<bool>,
 }
 
-/// Bodies of which `initial` has the place, and how they are turned.
+/// By body, whether `initial` gives its position and orientation.
 fn placed(d: &Description) -> Vec<bool> {
     let mut coordinates = vec![0; d.bodies.len()];
     let mut is_turned = vec![!d.space.spatial; d.bodies.len()];
@@ -43,7 +43,7 @@ impl SubsystemQuestions {
         Self { outputs: vec![number], ..Self::default() }
     }
 
-    /// Has a description ask for this alone, of outputs at their new places.
+    /// Replaces a description's questions by these, with the new indices of their outputs.
     fn ask(&self, part: &mut Description) {
         part.outputs = self.outputs.iter().map(|&output| part.outputs[output].clone()).collect();
         part.reduced = self.reduced.iter().map(|&number| part.reduced[number].clone()).collect();
@@ -68,7 +68,7 @@ fn retain<T>(list: &mut Vec<T>, kept: &[bool]) {
     list.retain(|_| *kept.next().unwrap_or(&true));
 }
 
-/// The model of the parts in `set`, of which this is asked. Every other part is left out, and so are parameters that
+/// The model of the parts in `set`, with the questions `asked`. Every other part is omitted, and so are parameters that
 /// no kept part refers to. `merged`: by joint, whether its bodies move as one.
 pub fn extract(
     description: &Description,
@@ -178,7 +178,7 @@ impl Kept {
         asked.outputs.iter().for_each(|&output| named.extend(&couplings.outputs[output]));
         chosen(&joints).into_iter().for_each(|joint| named.extend(&couplings.joints[joint]));
         chosen(&effects).into_iter().for_each(|effect| named.extend(&couplings.effects[effect]));
-        // An instance's ground is where a body begins whose place or orientation is not given.
+        // A body whose position or orientation is not given starts from the ground of its instance.
         let placed = placed(d);
         let standing = chosen(&bodies).into_iter().filter(|&body| !placed[body]);
         named.parts.extend(standing.filter_map(|body| Some(Member::Body(d.bodies[body].standing?.ground))));

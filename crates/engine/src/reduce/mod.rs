@@ -2,11 +2,11 @@
 //!
 //! - `welds`: bodies that are welded together become one, unless an output needs the weld's reaction;
 //! - `couplings`: which bodies, joints and effects are coupled; the ground couples nothing;
-//! - parts that no output depends on are left out;
+//! - parts that no output depends on are omitted;
 //! - coupled parts are a subsystem, a model of its own (`extract`), with the uncertain parameters that it refers to,
 //!   and those of the `questions` whose outputs it has.
 //!
-//! A model of one subsystem, of which nothing is left out, stays as it is.
+//! A model of one subsystem without omitted parts stays as it is.
 
 mod couplings;
 mod extract;
@@ -30,7 +30,7 @@ pub use welds::Weld;
 pub struct Choices {
     /// Whether welded bodies are merged.
     pub merge: bool,
-    /// Whether parts that no output depends on are left out.
+    /// Whether parts that no output depends on are omitted.
     pub prune: bool,
     /// Whether subsystems become models of their own.
     pub part: bool,
@@ -71,7 +71,7 @@ pub struct Reduction {
 }
 
 impl Reduction {
-    /// Of a model.
+    /// Reduces a model.
     pub fn of(description: &Description, choices: Choices) -> Self {
         if description.black_box.is_some() {
             return Self::whole(description);
@@ -169,7 +169,7 @@ fn sets_of_outputs(
         couplings.unite(parts);
         needed.extend(parts.iter().filter(|&&part| !couplings.is_grounded(part)));
     }
-    // Every body adds to an energy; and where no output refers to anything that moves, nothing can be left out.
+    // Every body adds to an energy; and if no output refers to anything that moves, nothing can be omitted.
     if couplings.outputs.iter().any(|named| named.everything) || needed.is_empty() || !choices.prune {
         needed = movable.to_vec();
         couplings.unite(movable);

@@ -14,8 +14,8 @@ pub enum Question {
     Requirement(usize),
 }
 
-/// All questions of a model whose questions have their places among its outputs, each with the numbers of the outputs
-/// that it needs. What a requirement of reduced outputs needs is what these need.
+/// All questions of a model whose questions refer to its outputs by index, each with the numbers of the outputs that it
+/// needs. A requirement of reduced outputs needs the outputs that these need.
 pub fn questions(description: &Description) -> Vec<(Question, Vec<usize>)> {
     let reduced = description.reduced.iter().enumerate();
     let reduced = reduced.map(|(number, own)| (Question::Reduced(number), own.outputs.clone()));

@@ -26,11 +26,11 @@ pub enum FmiVersion {
     Three,
 }
 
-/// Contents of a unit's description, beside its code.
+/// Contents of a unit's description, in addition to its code.
 pub(super) struct Unit<'u> {
-    /// Of its files.
+    /// Name of its files.
     pub name: &'u str,
-    /// Of its functions.
+    /// Prefix of its functions.
     pub prefix: &'u str,
     /// Names and units of the outputs.
     pub outputs: &'u [(&'u str, &'u str)],

@@ -101,8 +101,8 @@ impl Active {
     }
 
     /// Entries below the diagonal whose mirror images are the same expressions, and stay so if both change by the
-    /// mirror image's product: what an entry of the pivot's row is multiplied by there. A symmetric matrix then takes
-    /// half the operations.
+    /// mirror image's product; each with the factor of the pivot row's entry in that product. A symmetric matrix then
+    /// takes half the operations.
     fn mirrored(
         &self,
         row: usize,
@@ -128,7 +128,7 @@ impl Active {
         mirrored
     }
 
-    /// entry(row, column) −= `product`, which is `ratio` times what stands above.
+    /// entry(row, column) −= `product`, which is `ratio` times the entry `above`.
     fn update(&mut self, graph: &mut Graph, row: usize, column: usize, product: Expr, ratio: &Numbers, above: &Entry) {
         let old = self.rows[row].get(&column).copied();
         let value = match old {

@@ -22,7 +22,7 @@ pub enum NoFactors<Row = usize> {
 }
 
 impl NoFactors {
-    /// The same, with what its rows stand for.
+    /// The same, with its rows replaced by the function `row`.
     pub fn named<Row>(self, row: impl FnMut(usize) -> Row) -> NoFactors<Row> {
         match self {
             Self::Singular { rows } => NoFactors::Singular { rows: rows.into_iter().map(row).collect() },
@@ -31,7 +31,7 @@ impl NoFactors {
     }
 }
 
-/// How pivots are searched for.
+/// Rule for the search for pivots.
 pub struct PivotRule<'a> {
     /// Stages of the graph's nodes.
     pub stages: Stages,

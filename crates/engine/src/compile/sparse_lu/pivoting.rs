@@ -280,7 +280,7 @@ impl<'m> PivotSearch<'m> {
     }
 }
 
-/// Diagonal entries by cost and place, with their sizes against their columns where those have been looked at.
+/// Diagonal entries by cost and index, with their sizes against their columns where those have been computed.
 struct Diagonals {
     by_cost: Vec<(usize, usize, Option<f64>)>,
 }
