@@ -61,7 +61,7 @@ pub fn choose_independent(simulator: &Simulator, parameters: &[f64], motion: &[f
     tile.lane_mut(layout.time)[0] = time;
     tile.run(start.sample());
     tile.run(start.jacobian());
-    // Of positions: what rolls may be anywhere.
+    // Constraints of positions only: rolling bodies may be anywhere.
     let constraints = simulator.system.constraint.len();
     let mut slopes = DMatrix::zeros(constraints, n);
     for &(row, column, register) in start.jacobian_entries.iter().filter(|&&(row, ..)| row < constraints) {

@@ -10,14 +10,14 @@ use crate::model::Analysis;
 #[derive(Clone, Debug)]
 pub struct Derived {
     formulas: NumberFormulas,
-    /// Places of the results among the outputs, in the formulas' order.
+    /// Indices of the results among the outputs, in the formulas' order.
     results: Vec<usize>,
-    /// Places of the outputs.
+    /// Indices of the outputs.
     indices: Vec<usize>,
 }
 
 impl Derived {
-    /// Of a system whose further outputs are known; `None` where nothing follows from results.
+    /// For a system whose further outputs are known; `None` if no output follows from results.
     ///
     /// # Errors
     /// Where the analysis has no result of a name.

@@ -1,4 +1,4 @@
-//! Functions of the time as numbers over cells, lane by lane: what inputs are in a cell, and adjoints of that.
+//! Functions of the time as numbers over cells, lane by lane: values of inputs in a cell, and their adjoints.
 
 use super::tuning::TUNING;
 
@@ -7,7 +7,7 @@ use super::tuning::TUNING;
 pub struct CellFunctions<'f> {
     /// Times at which cells end, s, ascending. Every step lies in one cell.
     pub ends: &'f [f64],
-    /// Of each gradient, the inputs (two an excitation: level and slope) cell by cell.
+    /// Inputs (two an excitation: level and slope) of each gradient, cell by cell.
     pub values: &'f [Vec<f64>],
 }
 
@@ -33,7 +33,7 @@ impl TileInputs {
         Self { ends: functions.ends.to_vec(), values, size: inputs * lanes.len() }
     }
 
-    /// The cell that holds what ends at a time, s.
+    /// The cell of a step that ends at a time, s.
     pub fn cell(&self, end: f64) -> usize {
         self.ends.partition_point(|own| *own < end * (1.0 - TUNING.same_cells)).min(self.ends.len().saturating_sub(1))
     }
@@ -43,7 +43,7 @@ impl TileInputs {
         &self.values[cell * self.size..][..self.size]
     }
 
-    /// Whether a cell begins where what ends at a time begins, after what ended before it, if anything did.
+    /// Whether a cell begins with the step that ends at `end`, after the step that ended at `before`, if there was one.
     pub fn begins(&self, end: f64, before: Option<f64>) -> bool {
         before.is_none_or(|before| self.cell(before) != self.cell(end))
     }

@@ -1,4 +1,4 @@
-//! The states between the steps of a tile, which are needed backwards: all of them where there is room, else those at a
+//! The states between the steps of a tile, which are needed backwards: all of them if there is room, else those at a
 //! fixed interval of steps, from which the others are computed once more.
 
 use super::tuning::TUNING;
@@ -8,10 +8,10 @@ pub(in crate::simulate) trait Stepping {
     /// Its state.
     fn state(&self) -> &[f64];
 
-    /// Goes on before a step from a state that it had there.
+    /// Restores a state that it had before a step.
     fn restore(&mut self, step: usize, state: &[f64]);
 
-    /// Takes a step. The state before it changed at the step's end, where it does.
+    /// Takes a step. Returns the state before its change at the step's end, if it changed there.
     fn advance(&mut self, step: usize) -> Option<Vec<f64>>;
 }
 
@@ -22,7 +22,7 @@ pub(in crate::simulate) struct TilePath<S> {
     steps: usize,
     /// Values of a state.
     size: usize,
-    /// Steps between states that are kept.
+    /// Steps between stored states.
     every: usize,
     /// Those states, one after the other.
     kept: Vec<f64>,
@@ -49,7 +49,7 @@ impl<S: Stepping> TilePath<S> {
         path
     }
 
-    /// What takes the steps.
+    /// The tile that takes the steps.
     pub fn stepping(&self) -> &S {
         &self.stepping
     }
@@ -59,7 +59,7 @@ impl<S: Stepping> TilePath<S> {
         self.steps
     }
 
-    /// From the state that the tile has, before the step `first`, to the next that is kept.
+    /// Takes steps from the tile's state, before the step `first`, to the next stored state.
     fn fill(&mut self, first: usize, visit: &mut dyn FnMut(usize, &[f64])) {
         self.first = first;
         self.window.clear();

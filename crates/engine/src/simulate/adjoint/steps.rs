@@ -33,7 +33,7 @@ pub(super) struct TileSteps<'s> {
     /// The end of the first step that a lane did not take as its jet would: it did not converge, or its Newton matrix
     /// is singular.
     lost: Vec<Option<f64>>,
-    /// Functions of the time that are inputs, and what finds the accelerations that they begin with.
+    /// Functions of the time that are inputs, and the solver for the accelerations at the beginnings of cells.
     inputs: Option<(&'s TileInputs, Assembly<'s>)>,
 }
 
@@ -115,7 +115,7 @@ pub(super) struct StepAdjoints<'s> {
     path: TilePath<TileSteps<'s>>,
     tile: Tile,
     adjoints: Adjoints,
-    /// Of the start, and of instants at which states change.
+    /// Adjoints of the start, and of instants at which states change.
     start: StartAdjoints<'s>,
     shift: f64,
     /// Adjoints of the step's solution.
@@ -271,7 +271,7 @@ impl<'s> StepAdjoints<'s> {
         }
     }
 
-    /// Through what depends on the length of steps, once they change.
+    /// Pulls adjoints through the values that depend on the length of steps, once it changes.
     fn pull_step_size(&mut self, size: f64) {
         if size.is_finite() {
             self.adjoints.pull(self.program.step_size(), &mut self.tile);

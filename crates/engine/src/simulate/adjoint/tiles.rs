@@ -36,7 +36,7 @@ pub struct Gradient {
     pub by_parameters: Vec<f64>,
     /// By the inputs in each cell, where functions of the time are given.
     pub by_inputs: Vec<f64>,
-    /// End of the first step, s, that does not converge or is singular, where there is one: then neither is known.
+    /// End of the first step, s, that does not converge or is singular, if there is one: then neither is known.
     pub lost: Option<f64>,
 }
 
@@ -61,8 +61,7 @@ pub enum NoGradient {
 /// derivatives.
 ///
 /// # Errors
-/// Where samples cannot be assembled, or there are no motions; [`SimulationError::Interrupted`] where it is asked to
-/// end.
+/// If samples cannot be assembled, or there are no motions; [`SimulationError::Interrupted`] at an interruption.
 pub fn gradients(
     simulator: &Simulator,
     schedule: &Schedule,
@@ -355,7 +354,7 @@ impl TileOf<'_> {
         Ok(steps)
     }
 
-    /// Adds what an equilibrium, with which the motion begins, does to adjoints of the parameters.
+    /// Adds the adjoints of the parameters through an equilibrium with which the motion begins.
     fn add_equilibrium(&self, start: &Tile, positions: &[f64], total: &mut [f64]) {
         let Some(equilibrium) = &self.simulator.equilibrium else { return };
         let (layout, width) = (&self.simulator.start.layout, self.lanes.len());

@@ -55,8 +55,8 @@ impl Schedule {
         divided.taken(self.integration)
     }
 
-    /// An instant, or the time of the row that it is but for rounding, so that the row comes after what changes there;
-    /// of a schedule of this duration and output step, s.
+    /// An instant, or the time of the row that it equals but for rounding, so that the row comes after the changes
+    /// there; of a schedule of this duration and output step, s.
     pub(in crate::simulate) fn at_row(instant: f64, duration: f64, output_step: f64) -> f64 {
         let row = (instant / output_step).round();
         let time = Self::time_of(duration, output_step, row as usize);

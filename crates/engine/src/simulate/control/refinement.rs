@@ -1,4 +1,4 @@
-//! Schedules of the same rows with more steps, by which errors are told.
+//! Schedules of the same rows with more steps, from which errors are estimated.
 
 use super::schedule::{LastSteps, Schedule, StepList};
 use super::tuning::TUNING;
@@ -14,7 +14,7 @@ fn are_coprime(a: usize, b: usize) -> bool {
     if b == 0 { a == 1 } else { are_coprime(b, a % b) }
 }
 
-/// As `divided`, for steps of which some ends are kept; `others(n)` steps replace the n steps between two of these.
+/// As `divided`, for steps with some fixed ends `kept`; `others(n)` steps replace the n steps between two of these.
 fn divided_between(ends: &[f64], kept: &[usize], others: impl Fn(usize) -> usize) -> StepList {
     let mut divisions = Vec::new();
     let mut still = Vec::with_capacity(kept.len());

@@ -15,7 +15,7 @@ use crate::simulate::simulator::Simulator;
 use crate::simulate::step::{LocalError, Stepper};
 use crate::simulate::time_functions::{ResolvingSteps, TimeFunctions};
 
-/// A schedule from a tolerance, and what ended it before the duration did.
+/// A schedule from a tolerance, and the reason if it ends before the duration.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ToleranceSchedule {
     /// Up to the last row that a controlling sample reached.
@@ -32,8 +32,8 @@ pub struct ToleranceSchedule {
 /// Rows are whole multiples of `output_step`, and the end; a step is repeated with a smaller size where the largest
 /// error is too large or a sample does not converge.
 ///
-/// A sample for which no step is small enough is dropped, and the others continue. Where there are too many steps, the
-/// schedule ends; so does it where it is interrupted.
+/// A sample for which no step is small enough is dropped, and the others continue. If there are too many steps, the
+/// schedule ends; so does it at an interruption.
 ///
 /// # Errors
 /// Where a controlling sample cannot be assembled, and where functions of the time take far too many steps.
@@ -103,7 +103,7 @@ struct Control<'s> {
     dropped: Vec<usize>,
 }
 
-/// What became of a step.
+/// Outcome of a step.
 enum Outcome {
     /// The step stands; it ends at this time.
     Accepted(f64),

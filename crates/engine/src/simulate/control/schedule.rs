@@ -84,8 +84,8 @@ impl Schedule {
         Self { output_step, rows: ends.len() + 1, end, steps: StepList::Listed(ends), integration: Integration::Plain }
     }
 
-    /// Steps that end at the listed times, whatever rows lie between. The ends by the numbers `kept` stay where they
-    /// are in all schedules that are made of this one.
+    /// Steps that end at the listed times, whatever rows lie between. The ends with the indices `kept` remain in all
+    /// schedules that are made of this one.
     pub fn passing(duration: f64, output_step: f64, ends: Vec<f64>, kept: Vec<usize>) -> Self {
         let rows = rows(duration, output_step);
         let steps = StepList::Passing { ends, kept };

@@ -65,7 +65,7 @@ impl<'s> SwitchWatch<'s> {
         }
     }
 
-    /// (value, rate) of each switch, switch by switch, lane by lane; a rate is NaN where it is not known.
+    /// (value, rate) of each switch, switch by switch, lane by lane; a rate is NaN if it is not known.
     fn evaluate(&mut self, states: &Tile, into: &mut Vec<[f64; 2]>) {
         self.program.evaluate_at(states, &mut self.tile);
         let width = self.tile.width();

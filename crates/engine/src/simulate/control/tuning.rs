@@ -8,7 +8,7 @@ tuning! {
         /// A step longer than this share of the time left up to a goal is cut to half of that time, so that no sliver
         /// remains.
         halved_from: f64 = 0.55, moves "the steps of runs with chosen steps";
-        /// What functions of the positions may change by in a step, as a share of their range.
+        /// Largest change of functions of the positions in a step, as a share of their range.
         most_change: f64 = 0.5, moves "the steps of runs with chosen steps";
         /// A step towards a switch ends this share beyond it, so that it is passed.
         beyond_switch: f64 = 1e-6, moves "the steps of runs with chosen steps";

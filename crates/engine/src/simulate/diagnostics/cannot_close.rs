@@ -20,7 +20,7 @@ impl Simulator {
     /// The constraint that cannot be closed at a time wherever positions are sought from `state` (the layout's
     /// registers), and its residual. `None` where all constraints can be closed.
     pub(in crate::simulate) fn open_constraint(&self, state: &[f64], time: f64) -> Option<OpenConstraint> {
-        // Of the start only the constraints are kept.
+        // The constraints remain, without the other conditions of the start.
         let mut free = self.system.clone();
         free.start.position.fill(None);
         free.start.conditions.clear();

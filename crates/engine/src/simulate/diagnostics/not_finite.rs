@@ -22,7 +22,7 @@ pub fn not_finite(system: &System, layout: &Layout, state: &[f64], time: f64) ->
     let graph = &system.graph;
     let value = |expr: Expr| graph.evaluate(&[expr], value_of)[0];
     let (mut term, place) = named.into_iter().find(|&(expr, _)| !value(expr).is_finite())?;
-    // Points that coincide leave a line without direction: what acts along it must be zero there.
+    // Points that coincide leave a line without direction: a force along it must be zero there.
     let is_zero = |length: &Expr| value(*length).abs() <= f64::EPSILON * system.length;
     if let Some(line) = system.effects.iter().find(|effect| effect.length.as_ref().is_some_and(is_zero)) {
         return Some(format!(

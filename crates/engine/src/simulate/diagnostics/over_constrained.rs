@@ -1,4 +1,4 @@
-//! Why a mechanism cannot be assembled, where it has more constraints than coordinates can fulfil.
+//! Why a mechanism with more constraints than its coordinates can fulfil cannot be assembled.
 //!
 //! The rank of Φ_q is taken off the constraints, at a state in no particular position: there rows depend on others only
 //! where the joints' kinds make them, and not since lengths or a symmetry do.
@@ -42,7 +42,7 @@ pub fn over_constrained(system: &System, start: &StartProgram, near: &[f64]) -> 
     Some(text)
 }
 
-/// Which joints fix together what a constraint fixes once more.
+/// Joints that together already fix the motion that a constraint fixes.
 fn who_fixes(system: &System, rows: &[Vec<(usize, f64)>], constraint: usize) -> String {
     let dense = |row: &[(usize, f64)]| {
         let mut vector = DVector::zeros(system.q.len());
@@ -62,7 +62,7 @@ fn who_fixes(system: &System, rows: &[Vec<(usize, f64)>], constraint: usize) -> 
     let has_part = |&row: &usize| (shares[row] * columns[row].norm()).abs() > TUNING.part_of_row * own.norm();
     let parts: Vec<usize> = others.into_iter().filter(has_part).collect();
     let info = &system.constraints[constraint];
-    // A rotation that two joints fix is what engineers call by its name.
+    // If two joints fix one rotation, the message names both.
     let rotation = |row: &usize| {
         let other = &system.constraints[*row];
         other.unit == ResidualUnit::Angle && other.joint != info.joint

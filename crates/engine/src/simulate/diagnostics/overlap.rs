@@ -1,4 +1,4 @@
-//! Surfaces that overlap more deeply than their contact can tell, or that pass through one another within a step.
+//! Surfaces that overlap more deeply than their contact can handle, or that pass through one another within a step.
 
 use super::tuning::TUNING;
 use crate::compile::SwitchProgram;
@@ -8,7 +8,7 @@ use crate::simulate::step::Stepper;
 /// Two surfaces that a contact does not hold apart any more.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TooDeep {
-    /// Place among the effects whose surfaces may overlap to some depth only.
+    /// Index among the effects whose surfaces may overlap to some depth only.
     pub contact: usize,
     /// End of the step, s.
     pub time: f64,
@@ -74,8 +74,8 @@ impl<'s> OverlapWatch<'s> {
     }
 }
 
-/// The least distance between the ends of a step of length h of what moves past a point or a line at a constant
-/// velocity, given the distances and their rates at the ends; `None` where it does not first approach and then part.
+/// Least distance, within a step of length h, of a point that passes a point or a line at a constant velocity, given
+/// the distances and their rates at the ends; `None` if it does not first approach and then part.
 fn nearest([[left, rate], [left_after, rate_after]]: [[f64; 2]; 2], h: f64) -> Option<f64> {
     if !(left > 0.0 && rate < 0.0 && left_after > 0.0 && rate_after > 0.0) {
         return None;

@@ -5,14 +5,14 @@ use symdiff::constants::tuning;
 tuning! {
     /// Reasons why a simulation fails or is doubtful.
     "simulate: diagnostics" {
-        /// Operations of a term that are written out; deeper ones are left out.
+        /// Operations of a term that are written out; deeper ones are omitted.
         deepest_term: usize = 4, moves "how terms that are not finite are written in messages";
         /// Share of a row below which another has no part in it.
         part_of_row: f64 = 1e-6, moves "messages of joints that fix one another";
         /// Share of the coordinates' scales by which the state is moved off a position of its own.
         off_position: f64 = 0.37, moves "messages of joints that fix one another";
-        /// Most constraints of which the joints that fix one another are looked for: the search takes their number to
-        /// the third power.
+        /// Most constraints for which the joints that fix one another are searched for: the search takes their number
+        /// to the third power.
         most_constraints: usize = 400, moves "messages of joints that fix one another";
         /// Share of the deepest overlap that is left if nothing has a nearest side any more.
         nothing_left: f64 = 0.02, moves "warnings of contacts that were passed through";
@@ -39,7 +39,7 @@ tuning! {
         /// An independence does not vanish in a time in which it would have to fall this many times as steeply as it
         /// does anywhere around.
         steepest_fall: f64 = 4.0, moves "warnings of singular positions";
-        /// Most steps that are examined, so that the search stays short beside the run.
+        /// Most steps that are examined, so that the search is short compared with the run.
         most_examined_steps: usize = 200, moves "warnings of singular positions";
         /// A derivative along a null vector below this share of the whole gradient is zero.
         negligible_derivative: f64 = 1e-7, moves "messages of undetermined starts";

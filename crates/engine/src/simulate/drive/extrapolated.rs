@@ -1,15 +1,15 @@
 //! Extrapolation: runs with steps h, h/2, h/4, … combined so that the leading terms of their errors cancel.
 //!
 //! The scheme's error at a time is a h² + b h³ + c h⁴ + …: it is not even in h, since the algorithmic acceleration
-//! belongs to a time beside the step's end. So L levels have the combination
+//! belongs to a time near the step's end. So L levels have the combination
 //!
 //! ```text
 //! T₁(h) = run with h        T_{k+1}(h) = (2^{k+1} T_k(h/2) − T_k(h)) / (2^{k+1} − 1)
 //! ```
 //!
-//! and T_L is of order L + 1. Positions and velocities are combined, all of them, and closed
-//! ([`RowState`]); what else a row has follows from them. Levels run on by themselves
-//! (passive extrapolation), so that a stiff part is damped in each as it is in one.
+//! and T_L is of order L + 1. Positions and velocities are combined, all of them, and closed ([`RowState`]); the other
+//! values of a row follow from them. Levels run on by themselves (passive extrapolation), so that a stiff part is
+//! damped in each as it is in one.
 
 use std::ops::Range;
 
@@ -51,7 +51,7 @@ fn combined(weights: &[f64], values: &[Vec<f64>], into: &mut Vec<f64>) {
     }
 }
 
-/// Rows of some samples, or of a jet, and what closes them.
+/// Rows of some samples, or of a jet, with their closure.
 #[derive(Debug)]
 pub struct ClosedRows<R> {
     /// Numbers of the samples in the first lanes.
@@ -148,7 +148,7 @@ impl<'s, T: RowTile<'s>, R: RowState + Send + std::fmt::Debug> Integrator<'s> fo
         stops
     }
 
-    /// What the levels' outputs are reduced to, combined as their motions are.
+    /// Reduced outputs of the levels, combined as their motions are.
     fn reduced(&mut self) -> Vec<f64> {
         let of_levels: Vec<Vec<f64>> = self.levels.iter_mut().map(TiledRun::reduced).collect();
         let mut values = Vec::new();
@@ -205,7 +205,7 @@ impl<R: RowState> ClosedRows<R> {
         let of_row = motions.values.len() / motions.rows.max(1);
         let mut state = vec![0.0; of_row / motions.samples.max(1) * width];
         let mut values = vec![0.0; motions.rows * lines * width];
-        // A mechanism that is held has no coordinates, but outputs.
+        // A fully prescribed mechanism has no coordinates, but outputs.
         for row in 0..motions.rows {
             let motion = &motions.values[row * of_row..][..of_row];
             for (state, line) in state.chunks_exact_mut(width).zip(motion.chunks_exact(motions.samples)) {

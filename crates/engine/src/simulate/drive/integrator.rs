@@ -1,4 +1,4 @@
-//! What all ways to integrate can do, for an ensemble of samples and for one jet in the parameters.
+//! Common interface of all ways to integrate, for an ensemble of samples and for one jet in the parameters.
 
 use std::fmt::Debug;
 use std::ops::Range;
@@ -20,7 +20,7 @@ pub trait Integrator<'s>: Debug {
     /// Also reduces outputs to one number each.
     fn reduce(&mut self, channels: &'s [Channel]);
 
-    /// Ends where it is asked to.
+    /// Ends at an interruption.
     fn heed(&mut self, interruption: Interruption<'s>);
 
     /// Whether it ended at an interruption: the rows of the last call are not known, and others do not follow.
@@ -31,8 +31,7 @@ pub trait Integrator<'s>: Debug {
     /// takes shorter steps. Returns the samples that stopped.
     fn advance(&mut self, steps: Steps<'_>, rows: Range<usize>, observed: Observed, into: &mut Vec<f64>) -> Vec<Stop>;
 
-    /// After the last row: what outputs are reduced to, channel by channel, sample by sample; NaN of samples that
-    /// stopped.
+    /// Reduced outputs after the last row, channel by channel, sample by sample; NaN of samples that stopped.
     fn reduced(&mut self) -> Vec<f64>;
 
     /// Newton iterations and rank-revealing solves so far; none of explicit methods.

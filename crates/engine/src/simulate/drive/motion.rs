@@ -10,7 +10,7 @@ pub(in crate::simulate) trait Motion {
     /// Moves a state onto the constraints.
     fn close(&mut self, time: f64, state: &mut [f64]);
 
-    /// Gives what changes at instants its new values; whether the time is one.
+    /// Gives the states that change at instants their new values; returns whether the time is such an instant.
     fn sample(&mut self, time: f64, state: &mut [f64]) -> bool;
 }
 

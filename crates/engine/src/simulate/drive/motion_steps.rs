@@ -17,11 +17,11 @@ pub(in crate::simulate) trait MotionSteps<M>: std::fmt::Debug + Send + Sync {
     /// Tries a step that ends at a time; the motion was evaluated there last.
     fn attempt(&mut self, motion: &mut M, end: f64);
 
-    /// Largest error over the allowance of the step that was tried, of one lane; `sizes` (2n) is what counts as one of
-    /// each line, `tolerance` the share of it that a step may err by.
+    /// Largest error over the allowance of the step that was tried, of one lane; `sizes` (2n) are the scales of the
+    /// lines, `tolerance` the share of them that a step may err by.
     fn ratio(&self, end: f64, sizes: &[f64], tolerance: f64) -> f64;
 
-    /// Into how many equal parts others, who take these steps, have to divide the step that was tried.
+    /// Number of equal parts into which other samples with these steps have to divide the step that was tried.
     fn parts(&self, _end: f64, _sizes: &[f64]) -> usize {
         1
     }
@@ -29,8 +29,8 @@ pub(in crate::simulate) trait MotionSteps<M>: std::fmt::Debug + Send + Sync {
     /// The shortest step that was taken, as a share of the step that was tried.
     fn shortest(&self) -> f64;
 
-    /// Length of the next step given that of the one that was tried, and its error over the tolerance: of the same step
-    /// once more where it is more than 1.
+    /// Length of the next step given that of the one that was tried, and its error over the tolerance: a repetition of
+    /// the same step if that is more than 1.
     fn next_length(&self, step: f64, ratio: f64) -> f64;
 
     /// Prepares [`interpolate`](Self::interpolate) in the step that was tried.

@@ -1,4 +1,4 @@
-//! Values that a run records, and how it tells that a sample stopped.
+//! Values that a run records, and the stop of a sample.
 
 use crate::assemble::EquationId;
 use crate::simulate::diagnostics::OpenConstraint;

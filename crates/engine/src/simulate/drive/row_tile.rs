@@ -41,7 +41,7 @@ pub trait RowTile<'s>: Debug + Send {
     /// Also reduces the outputs to one number for each channel.
     fn reduce(&mut self, _channels: &'s [Channel], _outputs: usize) {}
 
-    /// After the last row: what outputs are reduced to, channel by channel, lane by lane; NaN of lanes that stopped.
+    /// Reduced outputs after the last row, channel by channel, lane by lane; NaN of lanes that stopped.
     fn reduced(&mut self) -> Vec<f64> {
         Vec::new()
     }
@@ -76,7 +76,7 @@ pub trait RowTile<'s>: Debug + Send {
         None
     }
 
-    /// Each lane's sum of local errors over the tolerance, where there is one.
+    /// Each lane's sum of local errors over the tolerance, if there is one.
     fn error_ratios(&self) -> &[f64] {
         &[]
     }

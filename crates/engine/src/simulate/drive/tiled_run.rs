@@ -35,7 +35,7 @@ struct Driven<'s, T> {
 }
 
 impl<'s, T: RowTile<'s>> TiledRun<'s, T> {
-    /// Of tiles at the start.
+    /// A run of tiles at the start.
     pub fn of(simulator: &'s Simulator, tiles: Vec<T>) -> Self {
         let driven = |tile: T| Driven { samples: tile.samples(), tile, asked: StepInterruption::default() };
         let tiles: Vec<Driven<'s, T>> = tiles.into_iter().map(driven).collect();

@@ -23,7 +23,7 @@ pub(in crate::simulate) fn tiles(samples: usize, registers: usize, threads: usiz
 }
 
 /// Puts lines of a tile (line, lane) among those of `all` samples (line, sample). The first lanes are `samples`, others
-/// are left out.
+/// are omitted.
 pub(super) fn put_lanes(values: &[f64], width: usize, samples: &[usize], into: &mut [f64], all: usize) {
     for (of_tile, line) in values.chunks_exact(width).zip(into.chunks_exact_mut(all.max(1))) {
         samples.iter().zip(of_tile).for_each(|(&sample, &value)| line[sample] = value);

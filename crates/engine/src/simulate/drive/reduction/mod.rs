@@ -59,7 +59,7 @@ pub struct Channel {
 #[derive(Clone, Debug)]
 struct State {
     value: f64,
-    /// Of an extreme: time of the greatest value, s, and that value.
+    /// Time of an extreme, s, and its value.
     time: f64,
     height: f64,
     zone: Zone,
@@ -177,7 +177,7 @@ impl<'s> Accumulator<'s> {
     }
 }
 
-/// Whether a channel of a single time may end here: nothing is known yet of what comes after.
+/// Whether a channel of a single time may end here: later steps are not known yet.
 fn is_last(channel: &Channel, end: f64) -> bool {
     channel.to.is_infinite() || channel.to <= end * (1.0 + 1e-12)
 }
@@ -224,7 +224,7 @@ fn take(state: &mut State, piece: &Piece, channel: &Channel) {
     }
 }
 
-/// Notes a higher place.
+/// Stores a higher value with its time.
 fn climb(state: &mut State, piece: &Piece, part: &Range<f64>, sign: f64) {
     let (share, height) = piece.greatest(part, sign);
     if state.height.is_nan() || sign * height > sign * state.height {

@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::tuning::TUNING;
 use crate::numerics::bisected;
 
-/// A place in a piece, as a share of its length, and the value there.
+/// A point of a piece: the share of its length, and the value there.
 pub(super) type PiecePoint = (f64, f64);
 
 /// The values between two steps.
@@ -19,7 +19,7 @@ pub(super) struct Piece {
     pub ends: [f64; 2],
     /// Coefficients of the powers of the share of the length.
     cubic: [f64; 4],
-    /// The highest and the lowest place between the ends, where they are above or below both.
+    /// The highest and the lowest point between the ends, if they are above or below both.
     peaks: [Option<PiecePoint>; 2],
 }
 
@@ -109,7 +109,7 @@ impl Piece {
         half * self.length * sum
     }
 
-    /// The highest place of the cubic times `sign`, where it and both parabolas rise above the ends.
+    /// The highest point of the cubic times `sign`, if it and both parabolas rise above the ends.
     fn peak(&self, sign: f64, parabolas: &[[f64; 4]]) -> Option<PiecePoint> {
         let ends = (sign * self.ends[0]).max(sign * self.ends[1]);
         let rise = |polynomial: &[f64; 4]| {

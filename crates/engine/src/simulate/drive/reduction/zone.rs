@@ -2,7 +2,7 @@
 
 use super::tuning::TUNING;
 
-/// A path, of which the convex hull is kept.
+/// A path, represented by its convex hull.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Zone {
     points: Vec<[f64; 2]>,
@@ -55,8 +55,8 @@ fn narrowest(hull: &[[f64; 2]]) -> f64 {
         }
         widths.push(distance(edge, far));
     }
-    // Rounding may have held the point back: then a width is too small. The least one is looked at again, until it is
-    // right.
+    // Rounding may have stopped the farthest point early: then a width is too small. The least one is computed again,
+    // until it is right.
     loop {
         let edge = (0..count).fold(0, |best, edge| if widths[edge] < widths[best] { edge } else { best });
         let width = (0..count).map(|index| distance(edge, index)).fold(0.0, f64::max);
