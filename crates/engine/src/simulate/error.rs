@@ -39,10 +39,10 @@ pub enum SimulationError {
         /// The sample.
         parameters: NamedValues,
     },
-    /// The explicit method is asked for where it is of no use.
+    /// The explicit method is asked for but is of no use.
     #[error("the explicit method is not for this: {why}; `scheme: hht` integrates it, and `auto` chooses")]
     NotExplicit {
-        /// What stands against it.
+        /// The reason.
         why: String,
     },
     /// A program that stands for a mechanism cannot be started.
@@ -122,7 +122,7 @@ pub enum SimulationError {
         /// Names of coordinates that are left free.
         coordinates: Vec<String>,
     },
-    /// A requirement names what the analysis does not find.
+    /// A requirement names a result that the analysis does not have.
     #[error("`{name}` is none of the results of this analysis, which are {known}")]
     NoResult {
         /// The name.
@@ -146,7 +146,7 @@ pub enum SimulationError {
     /// Simulations were left to shards.
     #[error("simulations are missing")]
     Deferred,
-    /// The folder of kept simulations cannot be used.
+    /// The folder of stored simulations cannot be used.
     #[error("{message}")]
     Store {
         /// Why.
@@ -201,7 +201,7 @@ pub enum SimulationError {
         step: f64,
         /// s
         time: f64,
-        /// What keeps the error above the tolerance.
+        /// Cause of an error above the tolerance.
         cause: String,
         /// The sample.
         parameters: NamedValues,
@@ -215,7 +215,7 @@ pub enum SimulationError {
         step: f64,
         /// s
         time: f64,
-        /// What keeps the steps short.
+        /// Cause of the short steps.
         cause: String,
     },
     /// A force or a prescribed position changes too fast with the time.
@@ -286,7 +286,7 @@ pub(super) fn not_driven(system: &System, start: &StartProgram, state: &[f64]) -
     for (row, entries) in rows.iter().enumerate() {
         entries.iter().for_each(|&(column, value)| matrix[(row, column)] += value);
     }
-    // An angle is what people would drive.
+    // Users would drive an angle.
     let weight: Vec<f64> =
         system.coordinates.iter().map(|coordinate| if coordinate.is_angle { 1e-3 } else { 1.0 }).collect();
     let free = free_columns(&matrix, &weight);
@@ -324,7 +324,7 @@ pub(super) fn equation_name(system: &System, equation: Equation) -> String {
     }
 }
 
-/// What helps where joints place a body without mass only in part.
+/// Advice if joints place a body without mass only in part.
 fn not_placed(massless: Option<&str>) -> String {
     let Some(coordinate) = massless else { return String::new() };
     format!(

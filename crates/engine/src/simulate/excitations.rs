@@ -1,7 +1,7 @@
 //! Excitations of fast modes after the start: a jump of a force, a stop, a contact. Steps that are long for a mode damp
 //! its vibration, and halved steps do too.
 //!
-//! Of the nominal motion, f = φᵀM(ẅ + ω²(q − q₀)) is what acts on a mode φ: for as long as it is smooth, the mode
+//! In the nominal motion, f = φᵀM(ẅ + ω²(q − q₀)) is the force on a mode φ: for as long as it is smooth, the mode
 //! follows it. Where f jumps within a step by more than the steps before would let expect, the mode starts to vibrate
 //! with the amplitude of the jump over ω². Steps that are short for the mode (of a function of the time that is
 //! followed closely) make it vibrate themselves; its amplitude at their end is its excitation.
@@ -34,7 +34,7 @@ pub struct Excitation {
     pub amplitude: f64,
 }
 
-/// What excites modes after the start of the nominal motion on a schedule; steps resolve a mode whose frequency is at
+/// Excitations of modes after the start of the nominal motion on a schedule; steps resolve a mode whose frequency is at
 /// most `resolved` over their length. Ends where a step fails.
 pub fn excitations(
     simulator: &Simulator,

@@ -17,7 +17,7 @@
 //! largest remainder first, is then enough for them. P is the reactions' push M⁻¹Φ_qᵀ(Φ_q M⁻¹ Φ_qᵀ)⁻¹, which is
 //! orthogonal to the motion in the metric of the masses: fast modes fade without becoming slow, up to O(h). It stands
 //! in the Newton matrix's inverse. V brings the map of a gap ν and its derivatives, the same 3 × 3 numbers for every
-//! constraint, nearly to diagonal form, so that absolute values contract too. T is what accelerations have beside.
+//! constraint, nearly to diagonal form, so that absolute values contract too. T spans the remaining accelerations.
 
 use nalgebra::{DMatrix, Matrix3, Vector3};
 use symdiff::Interval;
@@ -32,7 +32,7 @@ use crate::numerics::larger;
 /// Units in which frames are made.
 #[derive(Clone, Debug)]
 pub(super) struct Units {
-    /// Of q̂, v̂, w, 3n: powers of two.
+    /// Units of q̂, v̂, w, 3n: powers of two.
     pub scale: Vec<f64>,
     /// h, s.
     pub step: f64,
@@ -124,7 +124,7 @@ impl EnclosureFrame {
         let (dimension, n, f) = (self.basis.rows, self.basis.rows / 3, self.independent.len());
         let columns = moved.part(space, 0..dimension, 0..2 * f).without_radii();
         let mut slow = self.follow(space, units, &columns)?;
-        // At the centre: what another coordinate moves per movement of the independent ones.
+        // At the centre: movement of another coordinate per movement of the independent ones.
         if (0..n).any(|row| (0..f).any(|column| slow.at(row, column)[0].abs() > TUNING.outrun)) {
             self.independent = pivots(&slow, n, f);
             self.inverse = None;
@@ -208,8 +208,8 @@ impl EnclosureFrame {
         Ok(())
     }
 
-    /// Bounds of this frame's coordinates of B z + e, |zᵢ| ≤ `radii`, |eᵢ| ≤ `fresh`; `turn` may choose Q, told what B
-    /// is in the basis.
+    /// Bounds of this frame's coordinates of B z + e, |zᵢ| ≤ `radii`, |eᵢ| ≤ `fresh`; `turn` may choose Q, given B in
+    /// the basis.
     ///
     /// (S F) x = B z + e has x = R (B z + e) + (I − R (S F)) x for R ≈ (S F)⁻¹, and z_s = Qᵀ x_s + (I − QᵀQ) z_s.
     fn coordinates_of(

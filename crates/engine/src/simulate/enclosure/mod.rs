@@ -12,9 +12,9 @@
 //! scheme's coefficients as they stand in `f64`: rounding and Newton's tolerance are bounded, the distance to the
 //! differential equation's solution is not.
 //!
-//! The state is kept as polynomials P(ξ) and a remainder A(ξ) z, |zᵢ| ≤ rᵢ, in a frame A(ξ) of polynomials ([`frame`]).
-//! A step ([`step`]) finds polynomials X(ξ) by Newton's iteration, bounds F at them in Taylor models (ρ), and proves by
-//! Krawczyk's operator that for every ξ and z there is a solution x = X + Y z + y with small y:
+//! The state is stored as polynomials P(ξ) and a remainder A(ξ) z, |zᵢ| ≤ rᵢ, in a frame A(ξ) of polynomials
+//! ([`frame`]). A step ([`step`]) finds polynomials X(ξ) by Newton's iteration, bounds F at them in Taylor models (ρ),
+//! and proves by Krawczyk's operator that for every ξ and z there is a solution x = X + Y z + y with small y:
 //!
 //! ```text
 //! y = −C (ρ + (J Y + G) z) + (I − C J) y,      J ∋ ∂F/∂x,  G ∋ ∂F/∂(q̂, v̂) A over the enclosure,  C ≈ J⁻¹,  Y ≈ −C G
@@ -128,7 +128,7 @@ struct Gains {
 }
 
 impl Gains {
-    /// Of HHT, the scheme of all models: α = α_m − α_f with α_m = 0.
+    /// The gains of HHT, the scheme of all models: α = α_m − α_f with α_m = 0.
     fn new(coefficients: Coefficients, h: f64) -> Self {
         let Coefficients { beta, gamma, .. } = coefficients;
         let alpha = coefficients.shift();
@@ -149,7 +149,7 @@ impl Gains {
     }
 }
 
-/// What the next step's length does: its own coefficients, and a becomes w + ratio (a − w) where the length changes.
+/// Gains of the next step's length; a becomes w + ratio (a − w) if the length changes.
 #[derive(Clone, Copy, Debug)]
 struct NextGains {
     gains: Gains,

@@ -21,7 +21,7 @@ pub(super) struct SquareSystem<'p> {
     slopes: &'p Tape,
     /// (residual, unknown, register) after `slopes`.
     entries: Vec<(usize, usize, usize)>,
-    /// What conditions and signs are of, and their registers: known where all unknowns are.
+    /// Arguments of conditions and signs, and their registers: known if all unknowns are.
     conditions: Option<(&'p Tape, &'p [usize])>,
 }
 

@@ -9,8 +9,7 @@ tuning! {
         outrun: f64 = 2.0, moves "widths of proven bounds";
         /// Largest entry that V leaves above the diagonal.
         off_diagonal: f64 = 0.05, moves "widths of proven bounds";
-        /// Time that the motion's velocities are measured in, beside positions, s: only the shape of the remainder
-        /// depends on it.
+        /// Time that relates the motion's velocities to positions, s: only the shape of the remainder depends on it.
         motion_time: f64 = 0.1, moves "widths of proven bounds";
         /// Most corrections of X; the residual that is left is bounded in any case.
         max_corrections: usize = 4, moves "widths of proven bounds";

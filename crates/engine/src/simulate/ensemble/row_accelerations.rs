@@ -5,7 +5,7 @@
 //! depend on w or λ, a row takes those that solve M w + Φ_qᵀ λ = Q and Φ̈ = 0 at its q and v. The steps go on with
 //! their own.
 //!
-//! With controlled steps velocities are made consistent too: steps grow as long as what moves allows, and leave Φ_q v +
+//! With controlled steps velocities are made consistent too: steps grow as long as the motion allows, and leave Φ_q v +
 //! Φ_t = C h² with it, which local errors of positions do not show.
 
 use symdiff::Tile;

@@ -13,7 +13,7 @@ use crate::simulate::error::SimulationError;
 use crate::simulate::simulator::Simulator;
 use crate::simulate::start::Assembly;
 
-/// What rows need of a mechanism.
+/// Properties of a mechanism that decide how rows are closed.
 #[derive(Clone, Copy, Debug)]
 pub struct Needs {
     /// Whether constraints are to be met.

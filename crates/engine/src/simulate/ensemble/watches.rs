@@ -31,7 +31,7 @@ pub(super) struct Watches<'s> {
     pub switches: Option<SwitchExtents<'s>>,
     /// Where surfaces may overlap to some depth only.
     pub overlaps: Option<OverlapWatch<'s>>,
-    /// Without a tolerance: whether steps pass over what forces do in space.
+    /// Without a tolerance: whether steps pass over features of forces in space.
     pub features: Option<FeatureWatch<'s>>,
 }
 

@@ -2,7 +2,7 @@
 //!
 //! On the side without the event, its margin is the least value of the switch until the next event; on the other side,
 //! the least value of the parabola on which the switch would go on. Both are zero on the surface and have the same
-//! slope there, so that a polynomial tells where it is.
+//! slope there, so that a polynomial locates it.
 
 use rayon::prelude::*;
 

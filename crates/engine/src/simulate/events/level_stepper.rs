@@ -1,9 +1,9 @@
-//! What takes the steps of one level of the scheme.
+//! Stepper of one level of the scheme.
 
 use crate::simulate::ensemble::JetStepper;
 use crate::simulate::step::{Counters, Pace, Stepper};
 
-/// What takes the steps of a level: for lanes, or for a jet.
+/// Takes the steps of a level: for lanes, or for a jet.
 pub(super) trait LevelStepper: std::fmt::Debug + Send + Sync {
     /// q, v, a, w, λ.
     fn save(&self) -> Vec<f64>;

@@ -2,7 +2,7 @@
 //!
 //! The instant of an event is solved to rounding: the step that crosses it is taken again with its length as the
 //! unknown, by Newton's method on the switch's value and rate at the step's end. It ends beyond the event by so little
-//! that what follows begins on the event's other side.
+//! that the next step begins on the event's other side.
 
 use super::scheme_steps::SchemeSteps;
 use super::segments::{Event, Following, SegmentMethod};
@@ -140,7 +140,7 @@ impl<'s> Path<'s> {
             if let Some((switch, share)) = crossing.filter(|(_, share)| *share < TUNING.near_end) {
                 self.closure.forget();
                 cut = Some(cut.map_or((self.h, switch), |(uncut, _)| (uncut, switch)));
-                // Where the step does not resolve what follows, its end says little of when that begins.
+                // If the step does not resolve the later motion, its end says little of when that begins.
                 self.h = step * if ratio <= 1.0 { share } else { share.max(TUNING.least_share) };
                 continue;
             }
@@ -244,13 +244,13 @@ impl<'s> Path<'s> {
         self.run.ratio(end, &sizes, self.tolerance)
     }
 
-    /// What counts as one of each line at the end of the step that was tried.
+    /// Scale of each line at the end of the step that was tried.
     fn sizes_of_lines(&self) -> Vec<f64> {
         self.movement.clone().reaching(&self.start, self.run.next(), 1).sizes()
     }
 
-    /// Adds to what counts as one of each line what its rounding is the tolerance of. Positions are rounded, and
-    /// velocities change by that over the shortest step: accelerations by a spring that steps resolve are no larger.
+    /// Adds the rounding of each line over the tolerance to its scale. Positions are rounded, and velocities change by
+    /// that over the shortest step: accelerations by a spring that steps resolve are no larger.
     fn allow_rounding(&self, end: f64, sizes: &mut [f64]) {
         let n = sizes.len() / 2;
         let shortest = (end - self.run.time()) * self.run.shortest();
@@ -268,7 +268,7 @@ impl<'s> Path<'s> {
         };
     }
 
-    /// Whether the step that was tried passes over what a force does in space.
+    /// Whether the step that was tried passes over a feature of a force in space.
     fn passes_over(&mut self, begin: f64, end: f64) -> bool {
         let Some(features) = self.features else { return false };
         let states = [self.run.state(), self.run.next()];
@@ -345,8 +345,8 @@ impl<'s> Path<'s> {
         Some(least)
     }
 
-    /// When a switch passes zero and comes back within the step that was tried, as far as both of its ends approach
-    /// zero: a step is long beside a small stop, and a cubic through its ends passes over it.
+    /// When a switch passes zero and comes back within the step that was tried, if both of its ends approach zero: a
+    /// step is long compared with a small stop, and a cubic through its ends passes over it.
     fn touched(&mut self, step: PathStep) -> Option<(f64, usize)> {
         let count = self.sizes.len();
         let mut found = |switch: usize| {

@@ -129,7 +129,7 @@ impl<'s> RowTile<'s> for SegmentRows<'s> {
         forget_lost(&self.alive, into);
     }
 
-    /// Of samples that spell no word nothing is reduced.
+    /// Nothing is reduced for samples that spell no word.
     fn reduce(&mut self, channels: &'s [Channel], outputs: usize) {
         let start = |_| Reduced { reduction: Accumulator::new(channels, outputs, 1), time: f64::NEG_INFINITY };
         self.reduced = self.tile.samples.iter().map(start).collect();

@@ -113,7 +113,7 @@ impl<'s> EventAdjoints<'s> {
     }
 
     /// Moves a state behind an event back along its motion to before it: a step's end is behind by rounding. The lanes
-    /// are of one sample, so that what holds for the first lane does for all.
+    /// are of one sample, so that the first lane decides for all.
     fn move_before(&mut self, event: Event, time: &mut f64, state: &mut [f64]) {
         let half = state.len() / 2;
         let [mut more, most] = self.back;
@@ -132,7 +132,7 @@ impl<'s> EventAdjoints<'s> {
         }
     }
 
-    /// Shares adjoints of what a switch is of among those of positions and velocities; those of the parameters stay.
+    /// Moves adjoints of a switch's arguments to those of positions and velocities; those of the parameters stay.
     fn share(&mut self, adjoints: &mut [f64]) {
         let layout = &self.program.layout;
         let mut take = |registers: std::ops::Range<usize>| {

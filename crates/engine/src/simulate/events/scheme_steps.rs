@@ -50,7 +50,7 @@ struct Level<S> {
 }
 
 impl<'s> SchemeSteps<Stepper<'s>> {
-    /// Of an assembled tile, on `levels` levels.
+    /// Steps of an assembled tile, on `levels` levels.
     pub fn of_lanes(simulator: &'s Simulator, start: &Tile, levels: usize) -> Self {
         let mut stepper = Stepper::new(&simulator.program, start);
         stepper.refine(true);
@@ -59,7 +59,7 @@ impl<'s> SchemeSteps<Stepper<'s>> {
 }
 
 impl<'s> SchemeSteps<JetStepper<'s>> {
-    /// Of a jet about an assembled centre, on `levels` levels.
+    /// Steps of a jet about an assembled centre, on `levels` levels.
     pub fn of_jet(
         simulator: &'s Simulator,
         space: &'s JetSpace,
@@ -134,7 +134,7 @@ impl<S: LevelStepper> SchemeSteps<S> {
     }
 }
 
-/// The first levels, and by how much all of them change what those have at the beginning of a step and at its end.
+/// The first levels, and the difference of all levels from them at the beginning of a step and at its end.
 #[derive(Debug)]
 struct Judged {
     weights: Vec<f64>,

@@ -67,7 +67,7 @@ pub enum SegmentMethod {
     /// By the explicit method.
     #[default]
     Explicit,
-    /// The same, where steps may also err by rounding: beside a rest all motion is of its size.
+    /// The same, where steps may also err by rounding: near rest the whole motion is of its size.
     ExplicitFromRest,
     /// By the scheme, where forces are stiff or the model asks for it.
     Scheme {
@@ -93,7 +93,7 @@ pub struct Following {
     pub tolerance: f64,
     /// How it is integrated.
     pub method: SegmentMethod,
-    /// With the scheme: what its steps may err by up to the end, as a share of how far the motion has gone.
+    /// With the scheme: allowed error of its steps up to the end, as a share of how far the motion has gone.
     pub of_steps: Option<f64>,
 }
 
@@ -126,7 +126,7 @@ impl Segments {
         self.words.iter().map(|word| word.steps.iter().map(Vec::len).sum()).max().unwrap_or(0)
     }
 
-    /// The same with `others(n)` steps in place of the n steps of each segment.
+    /// The same with `others(n)` steps instead of the n steps of each segment.
     #[must_use]
     pub fn with_steps(&self, others: impl Fn(usize) -> usize) -> Self {
         let of_segment = |ends: &Vec<f64>| shares_divided(ends, others(ends.len()));
@@ -135,13 +135,13 @@ impl Segments {
     }
 }
 
-/// Ends of `others` steps of a segment, in place of those that end at these shares of it.
+/// Ends of `others` steps of a segment, instead of those that end at these shares of it.
 pub(super) fn shares_divided(ends: &[f64], others: usize) -> Vec<f64> {
     let times: Vec<f64> = std::iter::once(0.0).chain(ends.iter().copied()).collect();
     divided(&times, others).collect()
 }
 
-/// Ends of `others` steps, in place of those that end at these times after the first, as dense as they are.
+/// Ends of `others` steps, instead of those that end at these times after the first, as dense as they are.
 pub fn divided(times: &[f64], others: usize) -> impl Iterator<Item = f64> {
     let count = times.len() - 1;
     (1..=others).map(move |other| {

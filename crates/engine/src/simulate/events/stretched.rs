@@ -8,7 +8,7 @@ use crate::simulate::step::Pace;
 /// A tile of samples on their way through a segment.
 #[derive(Debug)]
 pub struct Stretched<'s> {
-    /// What moves.
+    /// Closure of the samples' motions.
     pub closure: RowClosure<'s>,
     /// When the segment begins, and how long it is.
     pub pace: Pace,
@@ -19,7 +19,7 @@ pub(super) trait SchemeMotion: Motion {
     /// q, v, a, w, λ of the state whose rates were evaluated last; a is unknown.
     fn unknowns(&self) -> Vec<f64>;
 
-    /// What shares are of.
+    /// Times of the lanes, if the time is a share of a length.
     fn pace(&self) -> Option<&Pace>;
 
     /// Moves a state (q, v) on by a share, given its accelerations.

@@ -235,7 +235,7 @@ impl<'s> SegmentTile<'s> {
             nodes = self.pass(steps, ends_at_event);
         }
         if let Some(event) = event {
-            // Where an event is hardly more than grazed, another one of its switch is beside it.
+            // Where an event is hardly more than grazed, another one of its switch is close to it.
             let is_off = |lane: usize| {
                 let [value, rate] = self.watch.at_end(event.switch, lane);
                 let off = (value / rate).abs();

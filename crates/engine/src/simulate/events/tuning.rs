@@ -42,7 +42,7 @@ tuning! {
         least_share: f64 = 0.3, moves "the steps of motions with events";
         /// Share of a step over which the change of a rate is taken.
         share_for_bend: f64 = 1e-3, moves "the steps of motions with events";
-        /// Rate beside an extreme that counts as none, as a share of the rates at the step's ends.
+        /// Rate near an extreme that counts as zero, as a share of the rates at the step's ends.
         flat_rate: f64 = 1e-7, moves "the steps of motions with events";
         /// Most steps that are tried of a motion without an event: a smooth motion that takes more is stiff.
         most_steps: usize = 3000, moves "which motions are given up";
@@ -66,7 +66,7 @@ tuning! {
         rounding_of_steps: f64 = 64.0, moves "the steps of stiff motions with events";
         /// Largest factor from one step of the scheme to the next.
         largest_factor_of_levels: f64 = 3.0, moves "the steps of stiff motions with events";
-        /// Of its length, a step that passes over what a force does in space is tried with this share.
+        /// Share of the length of a step that passes over a feature of a force in space, with which it is tried again.
         passing_share: f64 = 0.5, moves "the steps of motions with events";
         /// Samples whose segments are passed together.
         run_width: usize = 16, moves "time only";

@@ -29,7 +29,7 @@ pub fn segments_of(
 ) -> Result<Option<Segments>, SimulationError> {
     let Some(program) = simulator.switches().filter(|_| can_be_cut(simulator)) else { return Ok(None) };
     let following = match following.method {
-        // Velocities of the scheme are rounded by what rounding of positions is over a short step.
+        // Rounding of velocities in the scheme is that of positions over a short step.
         SegmentMethod::Scheme { .. } => {
             Following { tolerance: following.tolerance.max(TUNING.error_of_scheme), ..following }
         }
@@ -103,9 +103,9 @@ pub fn segments_of(
     Ok(Some(Segments { words: words.collect(), boundaries, horizon, end, tolerance, method }))
 }
 
-/// How motions are followed that the explicit method has failed to: it errs by rounding beside a rest, and the scheme
-/// takes long steps where forces are stiff. None where some samples, followed roughly, meet no event, and where
-/// constraints drive a mechanism, at the same instants for all.
+/// How motions are followed that the explicit method cannot follow: it errs by rounding near rest, and the scheme takes
+/// long steps where forces are stiff. None if some samples, followed roughly, meet no event, and if constraints drive a
+/// mechanism, at the same instants for all.
 fn methods_for_failed(
     simulator: &Simulator,
     program: &SwitchProgram,
@@ -138,7 +138,7 @@ fn divided_word(word: Word, all: &[&Followed], longest: f64, end: f64) -> Word {
     Word { steps: word.steps.iter().enumerate().map(of_segment).collect(), ..word }
 }
 
-/// Whether motions may be cut at all: what else steps have to resolve is left to the schedules that do.
+/// Whether motions may be cut at all: instants and overlaps need other schedules, and configurations have no motion.
 fn can_be_cut(simulator: &Simulator) -> bool {
     Instants::of(simulator).is_empty() && simulator.overlaps().is_none() && !simulator.system.analysis.visits()
 }
@@ -206,7 +206,7 @@ fn within_budget(all: &[Followed], duration: f64) -> Option<Found> {
     is_worthwhile(horizon, count, duration).then_some((horizon, Some(end), words))
 }
 
-/// What some motions share up to a time, if instants are to differ between them.
+/// The common word of some motions up to a time, if instants are to differ between them.
 fn shared(all: &[&Followed], end: f64, is_one: bool) -> Option<Word> {
     let (count, tail) = extent(all, end)?;
     // Instants that are the same in all samples are kinks in time, none in the parameters.
@@ -248,7 +248,7 @@ fn extent(all: &[&Followed], end: f64) -> Option<(usize, Option<f64>)> {
     let (least, most) = (least?, most?);
     let reach = TUNING.followed_share * end;
     let are_known = |time: f64| all.iter().all(|followed| followed.known_to >= time);
-    // Where an event is beside the end for some, all go on to the next that all have.
+    // If an event is near the end for some, all go on to the next that all have.
     let counts = || all.iter().map(|followed| followed.before(end));
     Some(match () {
         () if least == most => (most, Some(end)),

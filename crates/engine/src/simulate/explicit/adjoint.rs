@@ -26,13 +26,13 @@ pub(in crate::simulate) struct ExplicitRow {
 #[derive(Debug)]
 pub(in crate::simulate) struct ExplicitAdjoints<'s> {
     path: TilePath<ExplicitSteps<'s>>,
-    /// Of the stages, and of closures.
+    /// Adjoints of the stages, and of closures.
     memory: StartAdjoints<'s>,
     closures: StartAdjoints<'s>,
     is_linear: bool,
     closes: bool,
-    /// Of the step that is followed: times of the stages, s, their states (q and v), their accelerations and
-    /// multipliers (w and λ), and the guesses of these.
+    /// The step that is followed: times of the stages, s, their states (q and v), their accelerations and multipliers
+    /// (w and λ), and the guesses of these.
     times: [f64; WITH_DENSE],
     stages: Vec<Vec<f64>>,
     unknowns: Vec<Vec<f64>>,

@@ -36,7 +36,7 @@ impl<'s> Tiles<'s> {
         Ok(Self { tiles, watch, features, samples: samples.to_vec(), movement })
     }
 
-    /// Whether a sample passes over most of what a force does in space in the step that was tried.
+    /// Whether a sample passes over most of a feature of a force in space in the step that was tried.
     pub fn pass_over(&self, end: f64) -> bool {
         let Some(features) = self.features else { return false };
         let mut work = FeatureWork::default();
@@ -83,7 +83,7 @@ impl<'s> Tiles<'s> {
         worst
     }
 
-    /// What a rejected step leaves in the memory may not be finite.
+    /// Forgets the values that a rejected step leaves in the memory: they may not be finite.
     pub fn reject(&mut self) {
         self.tiles.iter_mut().for_each(|tile| tile.motion.forget());
     }

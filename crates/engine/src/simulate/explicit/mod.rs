@@ -9,7 +9,7 @@
 //! - `runge_kutta`: a step, its errors and its dense output, for states of samples and of jets alike;
 //! - `movement`: how far the motion has gone, which errors count against;
 //! - `controlling`: the samples that decide on the steps, and where their equations switch;
-//! - `steps`: the steps that a tolerance asks for, and what stands against the method;
+//! - `steps`: the steps that a tolerance asks for, and obstacles to the method;
 //! - `tile`: samples, or a jet, over a schedule;
 //! - `listed`: steps that end at given times, and `adjoint`: backwards over them.
 

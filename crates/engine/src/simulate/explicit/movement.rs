@@ -8,8 +8,8 @@ use crate::assemble::CoordinateInfo;
 pub(in crate::simulate) struct Movement {
     /// Distance from the start, or speed.
     farthest: Vec<f64>,
-    /// Least that counts, and what lines are of a kind: metres, angles, their rates; nothing depends on a coordinate
-    /// whose velocity is a state.
+    /// Least size of each line, and its kind: metres, angles, their rates; nothing depends on a coordinate whose
+    /// velocity is a state.
     least: Vec<f64>,
     kinds: Vec<Option<usize>>,
 }
@@ -41,7 +41,7 @@ impl Movement {
         self
     }
 
-    /// What counts as one of each line.
+    /// Scale of each line.
     pub fn sizes(&self) -> Vec<f64> {
         let mut most = vec![0.0_f64; self.farthest.len() + 4];
         for (&farthest, &kind) in self.farthest.iter().zip(&self.kinds) {

@@ -38,8 +38,8 @@ pub(in crate::simulate) fn next_length(step: f64, ratio: f64) -> f64 {
     adapted_length(step, ratio, 8, TUNING.largest_factor)
 }
 
-/// Length of the next step, s, given that of the one that was tried, and its error over the allowance: of the same
-/// step once more where it is more than 1. The error is of an order in the length, which grows by `largest` at most.
+/// Length of the next step, s, given that of the one that was tried, and its error over the allowance: a repetition of
+/// the same step if that is more than 1. The error is of an order in the length, which grows by `largest` at most.
 pub(in crate::simulate) fn adapted_length(step: f64, ratio: f64, order: usize, largest: f64) -> f64 {
     let factor = TUNING.safety * math::pow(ratio.max(TUNING.least_ratio), -1.0 / order as f64);
     step * match ratio {
@@ -142,8 +142,8 @@ impl RungeKutta {
         }
     }
 
-    /// Errors of the step that was finished, lane by lane; `sizes` (2n) is what counts as one of each line, `tolerance`
-    /// the share of it that a step may err by.
+    /// Errors of the step that was finished, lane by lane; `sizes` (2n) are the scales of the lines, `tolerance` the
+    /// share of them that a step may err by.
     pub fn errors(&self, end: f64, sizes: &[f64], tolerance: f64, width: usize) -> Vec<StepError> {
         let h = end - self.time;
         let error_of = |weights: Row, index: usize| -> f64 {

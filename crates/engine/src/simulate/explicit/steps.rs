@@ -1,4 +1,4 @@
-//! The steps that a tolerance asks for: all controlling samples in step, the worst decides; and what stands against the
+//! The steps that a tolerance asks for: all controlling samples in step, the worst decides; and obstacles to the
 //! method.
 
 use super::controlling::Tiles;
@@ -48,7 +48,7 @@ pub enum ExplicitObstacle {
 /// Rows stand where they are; steps pass over them.
 ///
 /// # Errors
-/// Where a controlling sample cannot be assembled, and at an interruption; inside, what stands against the method.
+/// If a controlling sample cannot be assembled, and at an interruption; inside, the obstacle to the method.
 pub fn explicit_schedule(
     simulator: &Simulator,
     samples: &[Sample],

@@ -31,7 +31,7 @@ pub(in crate::simulate) type ExplicitJets<'s> = TiledRun<'s, ExplicitTile<'s, Je
 #[derive(Debug)]
 pub(in crate::simulate) struct ExplicitTile<'s, M> {
     pub(super) motion: M,
-    /// Of rows, whose accelerations are those of their own states; those of a jet are the motion's.
+    /// Closure of rows, whose accelerations are those of their own states; rows of a jet use that of the motion.
     rows: Option<M>,
     pub(super) run: RungeKutta,
     /// The state at the start.

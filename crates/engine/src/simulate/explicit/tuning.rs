@@ -7,17 +7,17 @@ tuning! {
     "simulate: explicit" {
         /// Corrections that close a step's end: each squares its distance from the constraints.
         closing_corrections: usize = 2, moves "gradients of explicit runs, within rounding";
-        /// What functions of the positions may change by in a step, as a share of their range: rows of a long step see
+        /// Largest change of functions of the positions in a step, as a share of their range: rows of a long step see
         /// some of it.
         most_passed: f64 = 0.75, moves "the steps of explicit runs";
         /// A position that moves by less than this share of the farthest movement of its kind counts as if it moved by
         /// that share.
         least_movement: f64 = 1e-3, moves "the steps of explicit runs";
-        /// What moves by less than this share of a coordinate's typical size is at rest.
+        /// A coordinate that moves by less than this share of its typical size is at rest.
         at_rest: f64 = 1e-9, moves "the steps of explicit runs";
         /// Samples whose states are advanced together.
         run_width: usize = 32, moves "time only";
-        /// Places in a step at which outputs are taken that are reduced to one number: between them they are cubics.
+        /// Points of a step at which outputs are taken that are reduced to one number: between them they are cubics.
         places_of_reduced: usize = 16, moves "reduced outputs of explicit runs, also through events";
         /// Stages of a step that ends at an event end before it by this share of the step. Those as late as its end are
         /// less accurate than it, and would be on either side of the event by chance.

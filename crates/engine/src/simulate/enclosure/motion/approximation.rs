@@ -1,6 +1,6 @@
 //! An approximate motion over a cell as polynomials of (τ, ξ): Picard's iteration in jets.
 //!
-//! Nothing here is proven: what these polynomials miss is bounded afterwards.
+//! Nothing here is proven: the errors of these polynomials are bounded afterwards.
 
 use symdiff::JetMemory;
 

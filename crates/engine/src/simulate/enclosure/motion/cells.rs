@@ -20,7 +20,7 @@ pub(super) struct Passed {
     pub ranges: Vec<Interval>,
 }
 
-/// A cell that is proven, and what comes after it.
+/// A proven cell, and the start of the cell after it.
 pub(super) struct Next {
     pub cell: Cell,
     pub approximation: Approximation,
@@ -31,7 +31,7 @@ pub(super) struct Next {
     pub frame: Frame,
     /// Outputs over the cell.
     pub ranges: Vec<Interval>,
-    /// Of the accelerations, relative to their size.
+    /// Defect of the accelerations, relative to their size.
     pub defect: f64,
     /// Whether that is so large that a knot must be in the cell. Much shorter cells may be better then even if one of
     /// half the length is not: where the knot lies decides. Without a knot, halving that does not help shows that the

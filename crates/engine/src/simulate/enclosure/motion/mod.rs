@@ -56,7 +56,7 @@ pub struct MotionEnclosure<'s> {
     program: &'s EquationsProgram,
     spaces: &'s MotionSpaces,
     solves_accelerations: bool,
-    /// Of the coordinates, n.
+    /// Scales of the coordinates, n.
     scales: Vec<f64>,
     fine: ModelMemory<'s>,
     coarse: ModelMemory<'s>,
@@ -66,7 +66,7 @@ pub struct MotionEnclosure<'s> {
     /// At the start of the next cell.
     start: Approximation,
     frame: Frame,
-    /// Of the next cell, s.
+    /// Start of the next cell, s.
     time: f64,
     half: f64,
     /// Whether the last terms in τ of the accelerations over the cell that was tried last were large.

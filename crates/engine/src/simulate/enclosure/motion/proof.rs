@@ -14,12 +14,12 @@ use crate::certificate::spaces::{Cell, Space, truncate};
 use crate::compile::EquationsProgram;
 use crate::numerics::larger;
 
-/// What holds over a cell for every ξ, for the distance e = y − ŷ of a motion y from the approximation ŷ, y = (q, v).
+/// Bounds over a cell for every ξ, for the distance e = y − ŷ of a motion y from the approximation ŷ, y = (q, v).
 #[derive(Clone, Debug)]
 pub(super) struct Proven {
     /// How e grows.
     pub flow: Flow,
-    /// Bound of |e'| of what the approximation misses of the equations, 2n.
+    /// Bound of the part of |e'| due to the approximation's defect in the equations, 2n.
     pub defect: Vec<f64>,
     /// Bound of |∂f/∂y|, 2n × 2n.
     pub slopes: Bounds,
