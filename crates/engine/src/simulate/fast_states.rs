@@ -1,5 +1,5 @@
 //! Fast vibrations of states, as of a filter that rings, which the start excites and the steps damp: those of the
-//! states alone, about the nominal start, with positions and velocities held.
+//! states alone, about the nominal start, with constant positions and velocities.
 //!
 //! ṡ = A s + …: a pair λ of A with the vectors z and x (zᵀ A = λ zᵀ, A x = λ x) has of ṡ the part zᵀ ṡ/(λ zᵀ x), and as
 //! much again is its conjugate.

@@ -1,4 +1,4 @@
-//! What an analysis tells besides the model's outputs: names and units.
+//! Names and units of the results of an analysis in addition to the model's outputs.
 
 use super::modal::{self, Vibrations};
 use crate::assemble::{OutputInfo, System};

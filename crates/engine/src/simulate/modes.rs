@@ -23,9 +23,9 @@ pub struct ExcitedMode {
     pub decay: f64,
     /// Its decay by the scheme with these steps and with halved ones, 1/s.
     pub by_scheme: [f64; 2],
-    /// What excites it, and how much.
+    /// Its excitations.
     pub excitations: Vec<Excitation>,
-    /// What an amplitude of 1 is in each output, in the output's unit.
+    /// Amplitude of each output for an amplitude of 1, in the output's unit.
     pub in_outputs: Vec<f64>,
 }
 
@@ -44,8 +44,8 @@ impl ExcitedMode {
     }
 }
 
-/// The modes of a mechanism about its nominal start that the steps of a schedule damp, the fastest last, with what
-/// excites them.
+/// The modes of a mechanism about its nominal start that the steps of a schedule damp, the fastest last, with their
+/// excitations.
 pub fn excited_modes(simulator: &Simulator, schedule: &Schedule) -> Vec<ExcitedMode> {
     let n = simulator.system.q.len();
     if n > TUNING.most_coordinates {
@@ -125,8 +125,8 @@ impl Linearised {
         }
     }
 
-    /// Those of the mechanism with its states held, and those of the states with the mechanism held: together their
-    /// equations have no symmetric matrices.
+    /// Modes of the mechanism with constant states, and those of the states with constant positions and velocities:
+    /// together their equations have no symmetric matrices.
     fn modes(&self, simulator: &Simulator, h: f64) -> Vec<(ExcitedMode, WatchedMode)> {
         let mut modes = self.modes_of_mechanism(simulator, h).unwrap_or_default();
         modes.extend(self.modes_of_states(simulator, h));

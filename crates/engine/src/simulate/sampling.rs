@@ -1,7 +1,7 @@
 //! States that change at instants, as those of digital controllers do.
 //!
 //! Steps end at the instants. There the states take their new values, and accelerations and multipliers those that
-//! follow: the next step begins with what acts after the jump, so jumps cost no order.
+//! follow: the next step begins with the forces after the jump, so jumps cost no order.
 
 use symdiff::Tile;
 
@@ -16,12 +16,12 @@ use crate::compile::SampledValue;
 pub(in crate::simulate) struct Instants<'s>(&'s [SampledValue]);
 
 impl<'s> Instants<'s> {
-    /// Of a mechanism.
+    /// The instants of a mechanism.
     pub fn of(simulator: &'s Simulator) -> Self {
         Self(&simulator.start.sampled)
     }
 
-    /// Of these states.
+    /// The instants of these states.
     pub fn at(sampled: &'s [SampledValue]) -> Self {
         Self(sampled)
     }

@@ -39,7 +39,7 @@ pub struct Assembled {
     pub mobility: Mobility,
     /// Outputs that depend on reactions which equilibrium does not determine.
     pub undetermined: Vec<OutputId>,
-    /// Coordinates that share what the model leaves open of the start: it is nearest to rest, one of many.
+    /// Coordinates that share the open part of the start: it is nearest to rest, one of many.
     pub shared: Vec<String>,
     /// Where the start is an equilibrium.
     pub equilibrium: Option<Arc<Equilibrium>>,
@@ -75,7 +75,7 @@ impl Assembled {
         let assembled = |start: &StartProgram| {
             let mut assembly = Assembly::new(start, &system, 1, |parameter, _| parameters[parameter]);
             assembly.assemble_nominal().map_err(|worst| {
-                // What follows from a term that is none is none either.
+                // Values that follow from a term without a finite value are not finite either.
                 let finite = |value: &f64| if value.is_finite() { *value } else { 0.0 };
                 let state: Vec<f64> = assembly.tile().values()[..layout.registers()].iter().map(finite).collect();
                 let not_a_number = worst.residual.is_nan().then(|| no_number(&state));
@@ -176,7 +176,7 @@ pub struct Simulator {
     pub mobility: Mobility,
     /// Outputs that depend on reactions which equilibrium does not determine.
     pub undetermined: Vec<OutputId>,
-    /// Coordinates that share what the model leaves open of the start: it is nearest to rest, one of many.
+    /// Coordinates that share the open part of the start: it is nearest to rest, one of many.
     pub shared: Vec<String>,
     /// Where the start is an equilibrium.
     pub equilibrium: Option<Arc<Equilibrium>>,

@@ -22,11 +22,11 @@ tuning! {
         /// Steps of a tile between two questions: a question takes some nanoseconds, a step of a large mechanism a
         /// millisecond.
         steps_between_questions: usize = 8, moves "how soon an interrupted run ends";
-        /// Largest mechanism whose modes are looked at, in coordinates.
+        /// Largest mechanism whose modes are computed, in coordinates.
         most_coordinates: usize = 400, moves "which fast vibrations are reported";
         /// Most modes that are followed over the whole motion: the fastest.
         most_watched: usize = 40, moves "which fast vibrations are reported";
-        /// Modes are looked at if their frequency times the step is above this.
+        /// Modes are examined if their frequency times the step is above this.
         slowest_watched: f64 = 0.2, moves "which fast vibrations are reported";
         /// Eigenvalues of Φ_qᵀ Φ_q below this share of the largest belong to motions that the constraints allow.
         allowed_motion: f64 = 1e-12, moves "which fast vibrations are reported";
@@ -43,7 +43,7 @@ tuning! {
         switch_intervals: [usize; 3] = [32, 10, 6], moves "which unmet switches are found";
         /// Intervals of the first look over the time between two rows.
         intervals_of_time: usize = 4, moves "which unmet switches are found";
-        /// A switch is looked at more closely where its least distance from zero is less than this share of its range.
+        /// A switch is examined more closely where its least distance from zero is less than this share of its range.
         switch_near: f64 = 0.25, moves "which unmet switches are found";
         /// Values of a switch below this share of its largest value are zero.
         switch_zero: f64 = 1e-9, moves "which unmet switches are found";
@@ -51,9 +51,9 @@ tuning! {
         switch_rows: usize = 2, moves "which unmet switches are found";
         /// Reciprocal of the share of all rows within which the same sign at another sample is the same event.
         switch_share_of_rows: usize = 20, moves "which unmet switches are found";
-        /// Most places of a sign of a switch that are simulated because they are the first ones.
+        /// Most points with a sign of a switch that are simulated because they are the first ones.
         most_first: usize = 6, moves "which unmet switches are found";
-        /// Most places of a sign of a switch that are simulated because they go furthest.
+        /// Most points with a sign of a switch that are simulated because they go furthest.
         most_furthest: usize = 6, moves "which unmet switches are found";
         /// Points at which switches are evaluated at once.
         switch_width: usize = 32, moves "time only";
@@ -62,7 +62,7 @@ tuning! {
         /// Largest ratio of penetration depths for which a validation sample counts as evidence: one that only grazes
         /// a post says little of those that hit it.
         as_deep: f64 = 2.0, moves "which unmet switches are found";
-        /// A sign that samples have by less than this share of the other is looked for further on.
+        /// A sign that samples have by less than this share of the other is searched for further on.
         shallow_switch: f64 = 0.1, moves "which unmet switches are found";
     }
 }

@@ -3,8 +3,8 @@
 //!
 //! The motions of samples at Chebyshev nodes are polynomials in the parameters, row by row, and cubics in time between
 //! rows. Over both the values of the switches are ranged: where one can change its sign and no sample's does, that
-//! place is simulated itself. If it does switch, what the samples say holds no more from there on. Of many parameters
-//! only samples spread over the box are looked at.
+//! point is simulated itself. If it does switch, results from the samples are not valid from there on. With many
+//! parameters only samples spread over the box are examined.
 //!
 //! The same samples show from when on steps have switches inside them.
 
@@ -24,7 +24,7 @@ use crate::numerics::{Extent, Lattices, ParameterBox, SparseWork, Surrogate, Sur
 /// How far a switch went below and above zero since the row before.
 type Depths = [f64; 2];
 
-/// A place where a switch may have a sign that no sample's has.
+/// A point where a switch may have a sign that no sample's has.
 #[derive(Clone, Debug)]
 struct Suspect {
     row: usize,
@@ -38,8 +38,8 @@ struct Suspect {
 /// Known behaviour of the switches in a box.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SwitchSearch {
-    /// The first row before which a switch changes its sign for some parameter values and for none of the samples that
-    /// are held out.
+    /// The first row before which a switch changes its sign for some parameter values and for none of the held-out
+    /// samples.
     pub unmet_from: Option<usize>,
     /// The first row before which one changes its sign for any.
     pub switched_from: Option<usize>,
@@ -143,7 +143,7 @@ fn one_sided(program: &SwitchProgram, met: &[Depths]) -> Vec<(usize, usize)> {
     met.iter().enumerate().filter_map(other).collect()
 }
 
-/// ξ of the places that are worth a simulation.
+/// ξ of the suspects that are worth a simulation.
 fn chosen(suspects: Vec<Suspect>, switches: usize) -> Vec<Vec<f64>> {
     let mut chosen: Vec<Vec<f64>> = Vec::new();
     for (switch, side) in (0..switches).flat_map(|switch| [(switch, 0), (switch, 1)]) {

@@ -6,7 +6,7 @@ use symdiff::{Binary, Expr, Graph, Node, Unary};
 use super::tuning::TUNING;
 use crate::assemble::System;
 
-/// On what an expression depends, and how many operations it has at most.
+/// Dependences of an expression, and an upper bound of its number of operations.
 #[derive(Clone, Copy, Default)]
 struct Known {
     on_positions: bool,
@@ -64,7 +64,7 @@ pub(super) fn candidates(system: &System, graph: &mut Graph) -> Vec<Candidate> {
     found.chunk_by(|a, b| a.0 == b.0).map(with_conditions).collect()
 }
 
-/// Of every expression of `reachable` (children first), the conditions without which no root uses it.
+/// The conditions without which no root uses it, for every expression of `reachable` (children first).
 fn conditions(
     graph: &Graph,
     roots: &[Expr],

@@ -23,13 +23,13 @@ use tuning::TUNING;
 pub(super) struct Features {
     layout: Layout,
     functions: Vec<Function>,
-    /// Of all functions at once: they have most of their operations in common.
+    /// Ranges of all functions at once: they have most of their operations in common.
     ranges: Ranges,
 }
 
 #[derive(Clone, Debug)]
 struct Function {
-    /// Of this function alone.
+    /// Range of this function alone.
     ranges: Ranges,
     /// The width of its range.
     whole: f64,
@@ -64,7 +64,7 @@ pub(super) struct FeatureWork {
 }
 
 impl Features {
-    /// Of a mechanism; `None` where no force has any.
+    /// Finds the functions of a mechanism; `None` if no force has any.
     pub fn of(system: &System) -> Option<Self> {
         let mut graph = system.graph.clone();
         let candidates = candidates(system, &mut graph);
@@ -114,7 +114,7 @@ impl Features {
         ranges.any(|(range, function)| range.upper() - range.lower() > share * function.whole)
     }
 
-    /// Whether the ends of a step hide what functions do on the way.
+    /// Whether the ends of a step hide the course of functions between them.
     pub fn are_hidden(&self, passage: Passage, work: &mut FeatureWork) -> bool {
         let FeatureWork { path, symbols: [between, begin, end, part], values, wide } = work;
         path.take(passage, &self.layout);
@@ -158,7 +158,7 @@ impl Function {
         self.ranges.enclose(symbols, values).next().unwrap_or(Interval::ENTIRE)
     }
 
-    /// Range over those pieces of a part of a path on which it is used; `None` where it is on none.
+    /// Range over those pieces of a part of a path on which it is used; `None` if there are none.
     fn along(
         &self,
         path: &StepCubics,
@@ -231,7 +231,7 @@ impl<'s> FeatureWatch<'s> {
         self.with(stepper, lane, h, end, |features, passage, work| features.change(passage, share, work))
     }
 
-    /// After a step: whether its ends hide in one of the first `count` lanes what functions do on the way.
+    /// After a step: whether its ends hide the course of functions between them in one of the first `count` lanes.
     pub fn end_hidden(&mut self, stepper: &Stepper, count: usize, h: f64, end: f64) -> bool {
         self.end(stepper);
         let mut lanes = (0..count).filter(|&lane| stepper.alive()[lane]);

@@ -5,7 +5,7 @@ use symdiff::constants::tuning;
 tuning! {
     /// Short features of functions that steps must not pass over.
     "simulate: features" {
-        /// Operations of a function, counted as if nothing were shared; those of long chains of bodies are left out.
+        /// Operations of a function, counted as if nothing were shared; those of long chains of bodies are omitted.
         most_operations: usize = 2000, moves "the steps of runs with forces that are functions of positions";
         /// Positions over which a function's whole range is taken.
         far: f64 = 1e6, moves "the steps of runs with forces that are functions of positions";

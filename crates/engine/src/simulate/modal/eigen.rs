@@ -16,7 +16,7 @@ use crate::simulate::statics::{Linearised, reduced};
 pub struct Mode {
     /// Undamped natural frequency |λ|, rad/s; negative where the mode grows without vibrating.
     pub frequency: f64,
-    /// Damping ratio; NaN where there is no frequency.
+    /// Damping ratio; NaN without a frequency.
     pub damping: f64,
     /// Real and imaginary part of the shape, n each.
     pub shape: [Vec<f64>; 2],
@@ -72,7 +72,7 @@ impl Reduced {
         combined(&self.basis, part, self.basis[0].len())
     }
 
-    /// Of the symmetric part of K, without damping.
+    /// Modes of the symmetric part of K, without damping.
     fn undamped(&self) -> Option<Vec<Mode>> {
         let root = self.mass.clone().cholesky()?.unpack();
         let half = root.solve_lower_triangular(&symmetric(&self.stiffness))?;
@@ -159,7 +159,7 @@ impl Reduced {
         Some(modes)
     }
 
-    /// By inverse iteration with P(λ) = λ² M + λ C + K beside the eigenvalue, as real equations of twice the size.
+    /// By inverse iteration with P(λ) = λ² M + λ C + K near the eigenvalue, as real equations of twice the size.
     fn shape(&self, [re, im]: [f64; 2], begin: &Mode) -> Option<[Vec<f64>; 2]> {
         let k = self.basis.len();
         let off = TUNING.beside_eigenvalue

@@ -76,7 +76,7 @@ pub fn size(value: Complex<f64>) -> f64 {
     (value.re * value.re + value.im * value.im).sqrt()
 }
 
-/// A, and what its unknowns are.
+/// A, and its unknowns.
 struct FirstOrder {
     matrix: DMatrix<f64>,
     /// N, of positions first, n entries each.
@@ -110,7 +110,7 @@ impl FirstOrder {
         matrix.iter().all(|value| value.is_finite()).then_some(Self { matrix, basis, positions: k })
     }
 
-    /// Of a vector of positions and velocities, those of all coordinates.
+    /// Positions and velocities of all coordinates, given those along the basis.
     fn lifted(&self, vector: &[Complex<f64>]) -> Vec<Complex<f64>> {
         let n = self.basis.first().map_or(0, Vec::len);
         let (positions, velocities) = vector.split_at(self.positions);
@@ -140,7 +140,7 @@ fn blocks(matrix: &DMatrix<f64>) -> Vec<Vec<usize>> {
     sets.enumerate().filter(|(index, set): &(usize, Vec<usize>)| set[0] == *index).map(|(_, set)| set).collect()
 }
 
-/// Eigenvalues of a block, one for each pair; what rounding leaves of zero is zero.
+/// Eigenvalues of a block, one for each pair; values that are zero but for rounding are zero.
 fn values_of_block(matrix: &DMatrix<f64>, block: &[usize]) -> Option<Vec<Complex<f64>>> {
     if let &[only] = block {
         return Some(vec![Complex::new(matrix[(only, only)], 0.0)]);

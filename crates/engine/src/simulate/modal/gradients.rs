@@ -18,7 +18,7 @@ pub struct Gradients {
 }
 
 impl Gradients {
-    /// Of the first outputs of a system.
+    /// Differentiates the first outputs of a system.
     pub fn new(system: &System, outputs: usize) -> Self {
         let mut graph = system.graph.clone();
         graph.limit(None);

@@ -1,8 +1,8 @@
-//! Small vibrations about a configuration: modes, how they are followed over the box, and what harmonic loads do.
+//! Small vibrations about a configuration: modes, how they are followed over the box, and responses to harmonic loads.
 //!
 //! - `eigen`: frequencies, damping ratios and shapes; `follow`: which mode of one configuration is which of another;
 //! - `first_order`: eigenvalues where there are states; `roots`: the same of them;
-//! - `response`: the frequency response; `random`: what random excitations do;
+//! - `response`: the frequency response; `random`: responses to random excitations;
 //! - `outputs`: names and units of all that.
 
 mod eigen;

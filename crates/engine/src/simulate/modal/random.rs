@@ -1,4 +1,4 @@
-//! What stationary random excitations do to outputs of a linearised mechanism.
+//! Responses of outputs of a linearised mechanism to stationary random excitations.
 //!
 //! ```text
 //! y(iω) = H(iω) x(iω),   H = C (K + iω C − ω² M)⁻¹ B + D,   B = B₀ + iω B₁ − ω² B₂ by x, ẋ and ẍ
@@ -27,7 +27,7 @@ pub struct RandomLoads {
     /// By which symbol each register of the layout stands in the expressions.
     symbols: Vec<(Expr, usize)>,
     inputs: Vec<RandomInput>,
-    /// Of each symbol of an input: rows of the equations of motion, and outputs, with their derivatives.
+    /// Derivatives by each symbol of an input: of rows of the equations of motion, and of outputs.
     motion: Vec<(usize, usize, Expr)>,
     outputs: Vec<(usize, usize, Expr)>,
     sizes: [usize; 2],
@@ -48,7 +48,7 @@ struct Random<'l> {
 }
 
 impl RandomLoads {
-    /// Of a system and its first outputs; `None` without random excitations.
+    /// Differentiates a system and its first outputs; `None` without random excitations.
     pub fn new(system: &System, outputs: usize) -> Option<Self> {
         if system.random.is_empty() {
             return None;

@@ -1,6 +1,6 @@
-//! What a harmonic load of size one does: (K + iω C − ω² M) x = f on the motions that the constraints allow, for a load
-//! along an output u: f = ∂u/∂q. A state y is iω times its coordinate, so that its row says
-//! iω y = ∂f/∂q x + iω ∂f/∂v x + ∂f/∂y y of its rate f.
+//! Response to a harmonic load of size one: (K + iω C − ω² M) x = f on the motions that the constraints allow, for a
+//! load along an output u: f = ∂u/∂q. A state y is iω times its coordinate, so that its row is iω y = ∂f/∂q x + iω
+//! ∂f/∂v x + ∂f/∂y y for its rate f.
 
 use nalgebra::{DMatrix, DVector};
 

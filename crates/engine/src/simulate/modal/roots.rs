@@ -12,7 +12,7 @@ use super::first_order::{Eigenvalue, size};
 use crate::numerics::{RowSpace, dot};
 use crate::simulate::statics::{Linearised, times};
 
-/// What a mode is with the nominal parameters.
+/// Kind of a mode with the nominal parameters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ModeKind {
     /// A pair of eigenvalues.
@@ -31,13 +31,13 @@ pub struct Root {
 /// How outputs change with a mode.
 pub struct OutputChanges<'l> {
     linear: &'l Linearised,
-    /// Of Φ_q.
+    /// Row space of Φ_q.
     space: RowSpace,
     /// Rows by output: by q, v, w and λ.
     gradients: &'l [Vec<Vec<f64>>; 4],
 }
 
-/// What can be taken for known modes.
+/// Eigenvalues that may be those of known modes.
 struct Match {
     likeness: f64,
     known: Vec<usize>,

@@ -13,7 +13,7 @@ tuning! {
         beside_eigenvalue: f64 = 1e-9, moves "modes, within rounding";
         /// Share of M's trace that motions without mass get.
         least_mass: f64 = 1e-12, moves "modes, and the stability of equilibria, within rounding";
-        /// What rounding leaves of zero, as a share of the largest eigenvalue of a block.
+        /// Rounding of a zero eigenvalue, as a share of the largest one of a block.
         zero_of_block: f64 = 1e-12, moves "modes, within rounding";
         /// Splitting of a double zero: ±√ε.
         still_of_first_order: f64 = 1e-7, moves "modes, within rounding";

@@ -34,11 +34,11 @@ pub struct Vibrations {
     outputs: usize,
     /// Outputs that follow from the results.
     derived: usize,
-    /// Modes that are told.
+    /// Number of modes in the results.
     number: usize,
     /// Load and output of each response, by number, and its frequencies, Hz.
     responses: Vec<(usize, usize, Vec<f64>)>,
-    /// With states, those of the nominal start: what each mode is, there and elsewhere.
+    /// With states, the modes of the nominal start, which determine the kind of each mode everywhere.
     first: Option<ModesThere>,
     /// The nominal sample's, which others are compared with, row by row.
     pub nominal: OnceLock<Vec<ModesThere>>,
@@ -75,7 +75,7 @@ impl Modes {
 }
 
 impl Vibrations {
-    /// Of a mechanism with `freedom` degrees of freedom and this nominal start (the layout's registers).
+    /// Prepares a mechanism with `freedom` degrees of freedom and this nominal start (the layout's registers).
     pub fn new(system: &System, redundant: &[ConstraintId], freedom: usize, nominal: &[f64]) -> Self {
         let ModesRequest { number, responses } = &system.modes;
         // Those that follow from modes come last.
@@ -105,7 +105,7 @@ impl Vibrations {
         vibrations
     }
 
-    /// With states, what each mode is.
+    /// With states, the kind of each mode.
     fn kinds(&self) -> Vec<ModeKind> {
         match self.first.as_ref().map(|first| &first.modes) {
             Some(Modes::OfStates { modes, .. }) => modes.iter().map(|mode| mode.kind).collect(),
@@ -119,14 +119,14 @@ impl Vibrations {
         (!self.states.is_empty()).then(|| kinds[..self.number].iter().map(|kind| kind.quantities()).collect())
     }
 
-    /// How many modes are told.
+    /// Number of modes in the results.
     pub fn number(&self) -> usize {
         self.number
     }
 
-    /// The equations about a state's position (the layout's registers), as if it were held there and let go, and the
-    /// outputs of the state itself. Away from an equilibrium a stiffness depends on the coordinates; this is the one in
-    /// the metric of the kinetic energy. States are held at their values.
+    /// The equations about a state's position (the layout's registers), as if it were stopped there and released, and
+    /// the outputs of the state itself. Away from an equilibrium a stiffness depends on the coordinates; this is the
+    /// one in the metric of the kinetic energy. States keep their values.
     fn linearised(&self, state: &[f64]) -> (Linearised, Vec<f64>) {
         let layout = &self.program.layout;
         let parameters = &state[layout.parameters.clone()];
@@ -152,8 +152,8 @@ impl Vibrations {
         (at.linearise(), outputs)
     }
 
-    /// The modes of a state that are most like those of a known place, and how much alike the least are; without one,
-    /// the slowest.
+    /// The modes of a state that are most like those of a known configuration, and how much alike the least are;
+    /// without one, the slowest.
     pub fn place(&self, state: &[f64], known: Option<&ModesThere>) -> Option<(ModesThere, f64)> {
         let (linear, _) = self.linearised(state);
         let reference = known.or(self.first.as_ref());
@@ -194,7 +194,7 @@ impl Vibrations {
         Some((Modes::OfMasses { modes, mass: linear.mass.clone() }, least))
     }
 
-    /// What each mode does to each output, real and imaginary part. Without states, positions alone count.
+    /// Change of each output with each mode, real and imaginary part. Without states, positions alone count.
     fn changes(&self, linear: &Linearised, gradients: &[Vec<Vec<f64>>; 4], modes: &Modes) -> Vec<Vec<[f64; 2]>> {
         match modes {
             Modes::OfMasses { modes, .. } => {
@@ -265,7 +265,7 @@ impl Vibrations {
     }
 }
 
-/// What a mode does to an output.
+/// Change of an output with a mode.
 fn moved(by: &[f64], mode: &Mode) -> [f64; 2] {
     [dot(by, &mode.shape[0]), dot(by, &mode.shape[1])]
 }

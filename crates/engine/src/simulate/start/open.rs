@@ -9,7 +9,7 @@ use super::tuning::TUNING;
 use crate::assemble::{Distance, System};
 use crate::compile::{Layout, OpenStart, StartProgram, time_derivative};
 
-/// For which samples a start is looked for.
+/// Samples for which a start is searched for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Samples {
     /// The nominal one only.
@@ -63,7 +63,7 @@ pub fn shared_coordinates(system: &System, start: &StartProgram, nominal: &[f64]
     shared
 }
 
-/// What people call a coordinate, or its rate: Euler parameters are no names of `initial`.
+/// Name of a coordinate, or of its rate, for users: Euler parameters are no names of `initial`.
 fn known_as(name: &str, kind: Kind) -> String {
     let of_rotation = name.rsplit_once('.').filter(|(_, coordinate)| ["p0", "p1", "p2", "p3"].contains(coordinate));
     match (kind, of_rotation) {

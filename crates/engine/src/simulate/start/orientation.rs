@@ -17,7 +17,7 @@ pub struct Orientation {
     is_pivot: Vec<bool>,
 }
 
-/// What elimination says of Φ_q.
+/// Result of the elimination of Φ_q.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Oriented {
     /// Whether the determinant is negative.
@@ -27,8 +27,8 @@ pub struct Oriented {
 }
 
 impl Orientation {
-    /// Of a system with these redundant constraints; `None` where its independent constraints are not as many as
-    /// coordinates.
+    /// For a system with these redundant constraints; `None` if the number of its independent constraints is not that
+    /// of its coordinates.
     pub fn new(system: &System, redundant: &[ConstraintId]) -> Option<Self> {
         let n = system.q.len();
         let mut count = 0;
@@ -44,7 +44,7 @@ impl Orientation {
         is_square.then_some(Self { rows, scale, matrix, pivots: Vec::with_capacity(n), is_pivot })
     }
 
-    /// At the one lane's state; `None` where it is singular.
+    /// Eliminates Φ_q at the one lane's state; `None` if it is singular.
     pub fn at(&mut self, assembly: &mut Assembly) -> Option<Oriented> {
         let program = assembly.program();
         assembly.tile_mut().run(program.jacobian());

@@ -149,7 +149,7 @@ mod tests {
         assert_eq!(dependent_rows(&rows, 1e-9), [4]);
         assert_eq!(rows_with_shared_columns(&rows, &[0.0; 6]), [1, 3, 4]);
         let weak = vec![vec![(0, 1.0), (1, 1e-5)], vec![(0, 1.0)]];
-        // 1e-5 of a row is too little to tell it apart: both are eliminated, and neither depends on the other.
+        // 1e-5 of a row is too little to distinguish it: both are eliminated, and neither depends on the other.
         assert_eq!(rows_with_shared_columns(&weak, &[0.0; 2]), [0, 1]);
         assert!(dependent_rows(&weak, 1e-9).is_empty());
         let no_tail = vec![vec![(0, 1.0), (1, 0.0)], vec![(0, 2.0), (1, 0.0)]];

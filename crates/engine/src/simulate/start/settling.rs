@@ -13,7 +13,7 @@ pub(super) struct Settling {
 }
 
 impl Settling {
-    /// Of `width` lanes.
+    /// For `width` lanes.
     pub fn new(width: usize) -> Self {
         Self { pending: vec![true; width], size: vec![0.0; width], last: vec![f64::NAN; width] }
     }
@@ -59,7 +59,7 @@ impl LaneWork for Apply<'_> {
             let lanes = values.iter_mut().zip(corrections).zip(size.iter_mut()).zip(pending.iter());
             for (((value, correction), size), pending) in lanes {
                 *value = if *pending { *value + correction } else { *value };
-                // NaN is left out: who corrects looks for values that are not finite.
+                // NaN is ignored: the caller searches for values that are not finite.
                 let relative = (correction / scale.max(value.abs())).abs();
                 *size = if relative > *size { relative } else { *size };
             }

@@ -33,7 +33,7 @@ tuning! {
         several_open: f64 = 1e-6, moves "starts that are nearest to rest";
         /// Pivots below this share of the first one count as zero.
         rank_tolerance: f64 = 1e-9, moves "which constraints count as redundant";
-        /// A row is told apart by a column of its own where the entry there is at least this share of its largest.
+        /// A row is distinguished by a column of its own if the entry there is at least this share of its largest.
         own_share: f64 = 1e-3, moves "which constraints count as redundant";
         /// Corrections (relative to the coordinates' scales) that end the iteration.
         settled: f64 = 1e-14, moves "starts and equilibria, within rounding";

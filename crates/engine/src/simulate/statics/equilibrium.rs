@@ -4,8 +4,8 @@
 //! the coordinates is the shortest one that closes the constraints, and N p with Nᵀ K N p = −Nᵀ(M w + Φ_qᵀ λ − Q). Near
 //! a solution that is all: it is the nearest equilibrium, stable or not. Further away each eigenvalue of Nᵀ K N is
 //! taken positive, and the step is shortened: that leads downhill, to a stable one. States of controllers rest there,
-//! too: their rates are zero. What drives them has no hill; Newton's steps are shortened then, and stability is not
-//! looked at, for it depends on how they move.
+//! too: their rates are zero. Their drives have no hill; Newton's steps are shortened then, and stability is not
+//! examined, for it depends on how the states move.
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
@@ -38,7 +38,7 @@ pub(super) struct RestState {
     value: usize,
 }
 
-/// Why there is none.
+/// The reason why there is no equilibrium.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NoEquilibrium {
     /// The coordinate that is pushed most.
@@ -50,7 +50,7 @@ pub struct NoEquilibrium {
 }
 
 impl Equilibrium {
-    /// Of a mechanism with these redundant constraints.
+    /// For a mechanism with these redundant constraints.
     pub fn new(system: &System, redundant: &[ConstraintId]) -> Self {
         let scale = system.coordinates.iter().map(|coordinate| coordinate.scale).collect();
         let program = compile_equations(&system.at_rest());
@@ -153,7 +153,7 @@ impl Equilibrium {
         sizes.into_iter().fold(0.0, f64::max)
     }
 
-    /// What the stiffness says of an equilibrium's state.
+    /// Stability of an equilibrium's state by its stiffness.
     pub fn stability(&self, state: &[f64], parameters: &[f64]) -> Stability {
         Stability::of(&self.at(state, parameters).linearise())
     }
@@ -202,7 +202,7 @@ struct Step {
     all: Vec<f64>,
     /// The part along motions that the constraints allow.
     allowed: Vec<f64>,
-    /// Of the forces along that part.
+    /// Work of the forces along that part.
     work: f64,
     /// Whether it is that of Newton's method.
     is_newton: bool,
@@ -259,7 +259,8 @@ impl Balance {
         let nothing = TUNING.zero_stiffness * longest_of(&self.linear.stiffness).max(1e-300);
         let by_push = |a: &usize, b: &usize| pushed[*a].abs().total_cmp(&pushed[*b].abs());
         let is_alone = |index: &usize| self.linear.stiffness.column(*index).iter().all(|entry| entry.abs() <= nothing);
-        // A state that nothing depends on cannot be brought to rest, and what else is not in balance gives way to it.
+        // A state that nothing depends on cannot be brought to rest; it is reported before others that are not in
+        // balance.
         let least = TUNING.zero_stiffness * pushed.iter().fold(0.0_f64, |most, push| most.max(push.abs()));
         let states = states.iter().map(|state| state.index).filter(|&index| pushed[index].abs() > least);
         let open = states.filter(is_alone).max_by(by_push);
@@ -332,7 +333,7 @@ fn downhill(small: &DMatrix<f64>, forces: &[f64]) -> Vec<f64> {
     let eigen = SymmetricEigen::new((small + small.transpose()) * 0.5);
     let largest = eigen.eigenvalues.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
     let size = forces.iter().fold(0.0_f64, |size, force| size.max(force.abs()));
-    // Nothing is softer than what the force moves by a scale.
+    // No direction counts as softer than this: the force moves it by a scale at most.
     let least = (TUNING.zero_stiffness * largest).max(size);
     let mut found = vec![0.0; forces.len()];
     for (index, value) in eigen.eigenvalues.iter().enumerate() {

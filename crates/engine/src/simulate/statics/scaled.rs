@@ -11,7 +11,7 @@ pub(super) struct Scaled {
 }
 
 impl Scaled {
-    /// Of a matrix A.
+    /// Scales a matrix A.
     pub fn of(matrix: &DMatrix<f64>) -> Self {
         let mut matrix = matrix.clone();
         let inverse = |size: f64| if size > 0.0 { size.recip() } else { 1.0 };

@@ -8,7 +8,7 @@ use crate::assemble::CoordinateId;
 use crate::numerics::RowSpace;
 use crate::simulate::modal::tuning::TUNING as MODAL;
 
-/// What the stiffness says of an equilibrium.
+/// Stability of an equilibrium by its stiffness.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stability {
     /// The smallest eigenvalue of K φ = ω² M φ, rad²/s²: negative where the equilibrium is unstable; infinite where
@@ -19,7 +19,7 @@ pub struct Stability {
 }
 
 impl Stability {
-    /// Of the symmetric part of K: what follows loads does work of its own, which is no stiffness.
+    /// By the symmetric part of K: loads that follow the motion do work of their own, which is no stiffness.
     pub fn of(linear: &Linearised) -> Self {
         let space = RowSpace::of(&linear.jacobian, linear.motion.len());
         if space.null.is_empty() {

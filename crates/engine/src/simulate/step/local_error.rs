@@ -9,7 +9,8 @@ use crate::compile::Program;
 /// A lane's local error in a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LocalError {
-    /// Of positions, relative to |q| or the coordinate's scale, whichever is larger: what moves the mechanism.
+    /// Error of positions, relative to |q| or the coordinate's scale, whichever is larger, by the part that moves the
+    /// mechanism.
     pub size: f64,
     /// The same of the whole change of acceleration, with the parts that constraints and stiff forces leave little of.
     pub whole: f64,

@@ -2,7 +2,7 @@
 //!
 //! The iteration starts from extrapolated w and λ. One correction is mostly enough, because the contraction that was
 //! last observed of the lane's first corrections is taken into account. The matrix is factorised at the step's
-//! beginning and kept for the first corrections; where they do not suffice, it is factorised again for each further
+//! beginning and reused for the first corrections; where they do not suffice, it is factorised again for each further
 //! one. Every decision is a lane's own or counts steps and iterations, so that a sample's numbers do not depend on the
 //! samples that share its tile.
 
@@ -101,7 +101,7 @@ impl Newton {
 
     /// Solves the step whose `time` and h stand in the tile, for the lanes in `alive`; on return `alive` holds only
     /// those that converged. The step's tape must have run. With `refine`, lanes that have converged are corrected once
-    /// more: what Newton's tolerance leaves in positions is 1/(βh²) times as large in accelerations.
+    /// more: errors of positions within Newton's tolerance are 1/(βh²) times as large in accelerations.
     pub fn solve(&mut self, program: &Program, tile: &mut Tile, h: f64, refine: bool, alive: &mut [bool]) {
         self.pending.copy_from_slice(alive);
         self.start.clear();

@@ -1,7 +1,7 @@
 //! Times of lanes.
 
 /// Times of lanes whose steps have lengths of their own: a lane's time is its beginning and a share of its length, and
-/// shares are what lanes have in common.
+/// all lanes have the shares in common.
 #[derive(Clone, Debug, PartialEq)]
 pub(in crate::simulate) struct Pace {
     /// By lane, s.

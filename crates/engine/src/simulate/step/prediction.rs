@@ -1,4 +1,4 @@
-//! What Newton's iteration of a step starts from.
+//! Initial guess of Newton's iteration of a step.
 
 use symdiff::{LaneWork, Tile, lanes};
 

@@ -1,4 +1,4 @@
-//! What rounding leaves of the constraints at an iterate.
+//! Rounding errors of the constraints at an iterate.
 
 use std::collections::BTreeMap;
 
@@ -44,8 +44,8 @@ fn without_links(entries: Vec<(usize, usize, f64)>, size: usize) -> Vec<(usize, 
     condensed
 }
 
-/// What rounding makes of each of the n + m residuals, zero of those of motion: by rounding of positions, and by that
-/// of the constraints' terms, which counts where no coordinate changes their sum. `gain` is that of positions.
+/// Rounding error of each of the n + m residuals, zero for those of motion: by rounding of positions, and by that of
+/// the constraints' terms, which counts where no coordinate changes their sum. `gain` is that of positions.
 pub fn rounding_of_residuals(
     program: &Program,
     tile: &Tile,

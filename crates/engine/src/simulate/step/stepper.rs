@@ -138,7 +138,7 @@ impl<'p> Stepper<'p> {
         self.refines = refines;
     }
 
-    /// What [`refine`](Self::refine) was told last.
+    /// Whether steps take one more correction ([`refine`](Self::refine)).
     pub(in crate::simulate) fn refines(&self) -> bool {
         self.refines
     }
@@ -165,7 +165,7 @@ impl<'p> Stepper<'p> {
         self.newton.forget();
     }
 
-    /// Counts what another stepper has done for this one since it had counted `before`.
+    /// Counts the work of another stepper for this one since it had counted `before`.
     pub(in crate::simulate) fn count_since(&mut self, now: Counters, before: Counters) {
         self.newton.counters.iterations += now.iterations - before.iterations;
         self.newton.counters.rank_revealing += now.rank_revealing - before.rank_revealing;

@@ -24,7 +24,7 @@ pub struct TimeFunctions {
     halvings: u32,
 }
 
-/// What enclosures are made in, and how many there were.
+/// Memory for enclosures, and their number.
 #[derive(Clone, Debug, Default)]
 pub(in crate::simulate) struct Work {
     intervals: Vec<Interval>,
@@ -59,14 +59,14 @@ struct Term {
     frozen: bool,
 }
 
-/// What a jump depends on.
+/// The argument of a jump.
 #[derive(Clone, Debug)]
 struct Switch {
     of: Expr,
     formula: String,
     /// Value and rate.
     ranges: Ranges,
-    /// Places of switches at which the value jumps itself.
+    /// Indices of switches at which the value itself jumps.
     jumps_with: Vec<usize>,
 }
 
@@ -82,7 +82,8 @@ enum Switches {
 }
 
 impl TimeFunctions {
-    /// Of a mechanism over its box of parameters; `None` where no equation of motion depends on the time.
+    /// Finds the functions of a mechanism over its box of parameters; `None` if no equation of motion depends on the
+    /// time.
     pub fn of(simulator: &Simulator, duration: f64) -> Option<Self> {
         let mut functions = functions(simulator)?;
         let system = &simulator.system;
@@ -130,7 +131,7 @@ impl TimeFunctions {
     }
 
     /// The functions that steps of length h do not resolve from a time on: the first of them as a formula, its
-    /// expression, and its period, s, as far as its rate or its jumps tell.
+    /// expression, and its period, s, as far as its rate or its jumps determine it.
     pub(super) fn first_unresolved(&self, from: f64, h: f64, work: &mut Work) -> Option<Unresolved<'_>> {
         let symbols = self.over(from, from + h);
         let term = self.terms.iter().find(|term| !term.is_slow(self, (from, from + h), h, TUNING.resolved, work));
@@ -139,7 +140,7 @@ impl TimeFunctions {
             let period = if rate.magnitude().is_finite() { TAU * term.size / rate.magnitude() } else { h };
             return Some(Unresolved { formula: &term.formula, of: term.of, period });
         }
-        // Two jumps lie in what surrounds the step.
+        // Two jumps lie in the surroundings of the step.
         let near = self.switches.iter().find(|switch| switch.over(&symbols, work) != Switches::Never);
         let switch = near.or(self.switches.first())?;
         Some(Unresolved {
@@ -158,7 +159,7 @@ impl TimeFunctions {
         std::iter::once(Interval::new(a, b)).chain(self.parameters.iter().copied()).collect()
     }
 
-    /// Whether no more than one jump lies in a step and those beside it, for all parameters.
+    /// Whether at most one jump lies in a step and its neighbours, for all parameters.
     fn jumps_are_apart(&self, a: f64, b: f64, h: f64, work: &mut Work) -> bool {
         if self.switches.is_empty() {
             return true;
@@ -228,7 +229,7 @@ impl Term {
         if b - a > 1.5 * h {
             return false;
         }
-        // A rate without bound, as that of a root where it begins: what counts is how far the value goes beyond those
+        // A rate without bound, as that of a root where it begins: the criterion is how far the value goes beyond those
         // at the ends.
         let [first, last] = [a, b].map(|t| self.over(&all.over(t, t), work).0);
         let beyond = share * self.size;
@@ -244,7 +245,7 @@ impl Term {
 }
 
 impl Switch {
-    /// What switches beside the jump that another one brings about, which counts by itself: before it and after it.
+    /// Switches other than the jump that `other` causes, which counts by itself: before it and after it.
     fn beside(&self, other: &Self, symbols: &[Interval], work: &mut Work) -> Switches {
         let during = |a: f64, b: f64| [&[Interval::new(a, b)], &symbols[1..]].concat();
         let (first, last) = (symbols[0].lower(), symbols[0].upper());
@@ -300,8 +301,8 @@ fn pair(ranges: &Ranges, symbols: &[Interval], work: &mut Work) -> (Interval, In
     (next(), next())
 }
 
-/// Half the width of the range of a function over the duration, to a factor of two; `None` where it is constant, or has
-/// no bound.
+/// Half the width of the range of a function over the duration, to a factor of two; `None` if it is constant, or has no
+/// bound.
 fn size(ranges: &Ranges, parameters: &[Interval], nominal: &[f64], duration: f64) -> Option<f64> {
     let mut work = Work::default();
     let mut over = |a: f64, b: f64| {
@@ -338,7 +339,7 @@ fn size(ranges: &Ranges, parameters: &[Interval], nominal: &[f64], duration: f64
     match most - least {
         seen if !seen.is_finite() => None,
         seen if !negligible(seen) => Some(0.5 * seen),
-        // Nothing was seen of what may be there.
+        // The values show no change, but the enclosure allows one.
         _ if width.is_finite() && !negligible(width) => Some(0.5 * width),
         _ => None,
     }

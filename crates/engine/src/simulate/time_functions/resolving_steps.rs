@@ -16,7 +16,7 @@ pub(in crate::simulate) struct ResolvingSteps {
 }
 
 impl ResolvingSteps {
-    /// Of a run of at most `most` steps.
+    /// For a run of at most `most` steps.
     ///
     /// # Errors
     /// Where functions of the time take many more steps than that.
@@ -88,7 +88,7 @@ impl ResolvingSteps {
         Ok(h)
     }
 
-    /// Of a step that is as long as the functions allow, in place of which twice as long a one was asked for.
+    /// Error for a step that is as long as the functions allow: steps of twice its length do not resolve them.
     fn too_fast(&mut self, system: &System, time: f64, step: f64, most: usize) -> SimulationError {
         let h = 2.0 * step;
         let unresolved = self.functions.first_unresolved(time, h, &mut self.work);

@@ -14,11 +14,11 @@ pub(super) struct Functions {
     pub graph: Graph,
     /// Functions, and whether other symbols have been replaced by their values at the start.
     pub terms: Vec<(Expr, bool)>,
-    /// What a jump depends on: it is where such an expression changes its sign.
+    /// Arguments of jumps: a jump is where such an expression changes its sign.
     pub conditions: Vec<Condition>,
 }
 
-/// On what an expression depends.
+/// Dependences of an expression.
 #[derive(Clone, Copy, Default)]
 struct Dependence {
     time: bool,
@@ -37,7 +37,7 @@ pub(super) fn functions(simulator: &Simulator) -> Option<Functions> {
     let mut graph = system.graph.clone();
     let (mut whole, frozen) = maximal(&graph, simulator, &roots);
     let (prescribed, more_frozen) = maximal(&graph, simulator, &system.constraint);
-    // Of what positions follow, accelerations follow the second derivative.
+    // Accelerations follow the second derivatives of prescribed positions.
     for &position in &prescribed {
         let velocity = graph.derivative(position, system.time);
         whole.push(graph.derivative(velocity, system.time));

@@ -4,7 +4,7 @@
 //! halved where the correction from there is long, where the second correction is not much shorter than the first, so
 //! that another root is about as near (P. Deuflhard, Newton Methods for Nonlinear Problems, 2004, section 5.1), and
 //! where the determinant of Φ_q changes its sign. Where even the shortest way changes it, branches meet within
-//! rounding: the mechanism goes on smoothly, and the configuration is told as singular.
+//! rounding: the mechanism goes on smoothly, and the configuration is reported as singular.
 
 use super::Visit;
 use super::tuning::TUNING;
@@ -60,7 +60,7 @@ impl Simulator {
         Ok(visit)
     }
 
-    /// Tells of every row, in which the outputs are observed.
+    /// Goes through all rows, and calls `row` in each after the outputs are observed.
     pub(super) fn walk(
         &self,
         sample: &Sample,
@@ -159,7 +159,7 @@ impl Simulator {
         self.assembly_on_branch(sample, &mut Branch::new(self)).is_ok()
     }
 
-    /// Of a walk that stops short of `time + step`.
+    /// The stop of a walk that ends short of `time + step`.
     fn stopped(&self, assembly: &Assembly, row: usize, time: f64, step: f64) -> Stop {
         let state = assembly.tile().values()[..self.start.layout.registers()].to_vec();
         let open = [time + step, time + 1e3 * step].into_iter().find_map(|time| self.open_constraint(&state, time));
@@ -199,7 +199,7 @@ impl Branch {
         branch
     }
 
-    /// `None` where that cannot be told.
+    /// Orientation of Φ_q; `None` if it is not known.
     fn oriented(&mut self, assembly: &mut Assembly) -> Option<Oriented> {
         self.orientation.as_mut()?.at(assembly)
     }
@@ -232,8 +232,8 @@ impl Assembly<'_> {
         self.tile_mut().values_mut()[kept].copy_from_slice(state);
     }
 
-    /// Moves the one lane by `step` to a time. Where that leads too far it stays; where the branch is another one, the
-    /// state before is kept.
+    /// Moves the one lane by `step` to a time. If that leads too far, the state is restored; if the branch is another
+    /// one, the state before remains in `branch`.
     fn advance_to(&mut self, time: f64, step: f64, branch: &mut Branch) -> Advance {
         let layout = &self.program().layout;
         self.keep(&mut branch.before);
@@ -250,7 +250,7 @@ impl Assembly<'_> {
         advance
     }
 
-    /// Closes the one lane from where it is, as far as that is no other branch.
+    /// Closes the one lane from its state, unless that leads to another branch.
     fn correct_near(&mut self, branch: &mut Branch) -> Advance {
         let layout = &self.program().layout;
         let predicted = self.tile().values()[layout.q.clone()].to_vec();

@@ -35,7 +35,7 @@ pub struct Visit {
     pub stop: Option<Stop>,
     /// Singular configurations on the way that were passed smoothly.
     pub singular: Vec<SingularPass>,
-    /// What the outputs are reduced to, channel by channel; NaN where it stopped.
+    /// Reduced outputs, channel by channel; NaN where it stopped.
     pub reduced: Vec<f64>,
 }
 
@@ -44,7 +44,7 @@ impl Simulator {
     /// tolerance; kinematics does where outputs are reduced to one number by channels.
     ///
     /// # Errors
-    /// Where it cannot be assembled, or has no equilibrium; [`SimulationError::Interrupted`] where it is asked to end.
+    /// If it cannot be assembled, or has no equilibrium; [`SimulationError::Interrupted`] at an interruption.
     pub fn visit(
         &self,
         sample: &Sample,

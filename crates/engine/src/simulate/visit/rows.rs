@@ -2,8 +2,8 @@
 
 use crate::simulate::drive::{Accumulator, Channel};
 
-/// What the outputs of one sample are reduced to, channel by channel, given all of them (row by row) at these times,
-/// s. Between rows an output is the cubic through four of them.
+/// Reduced outputs of one sample, channel by channel, given all of them (row by row) at these times, s. Between rows an
+/// output is the cubic through four of them.
 pub fn reduced_rows(channels: &[Channel], times: &[f64], values: &[f64]) -> Vec<f64> {
     let outputs = values.len() / times.len().max(1);
     let mut reduction = Accumulator::new(channels, outputs, 1);
