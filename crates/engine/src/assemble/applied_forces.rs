@@ -40,7 +40,7 @@ struct Guarded<'g> {
 #[derive(Clone)]
 pub struct AppliedForces<'g> {
     g: &'g Builder,
-    /// On each body, about its frame's origin, in the ground's axes.
+    /// Wrench on each body, about its frame's origin, in the ground's axes.
     bodies: Vec<Wrench<'g>>,
     /// Generalised forces on coordinates of joints, modes and states, by their index in q.
     coordinates: BTreeMap<usize, Scalar<'g>>,
@@ -56,7 +56,7 @@ pub struct AppliedForces<'g> {
     measured: Vec<(Sensor, Scalar<'g>)>,
     /// Forces at points since then.
     thrusts: Vec<Thrust<'g>>,
-    /// How much room the effect has at the start.
+    /// Room of the effect at the start.
     pub room: Option<Scalar<'g>>,
     /// The gap of its surfaces, and how deep they may overlap.
     pub overlap: Option<(Scalar<'g>, Scalar<'g>)>,

@@ -9,7 +9,7 @@ use super::mechanism::Mechanism;
 pub struct AtGuess(FxHashMap<Expr, f64>);
 
 impl AtGuess {
-    /// With the guesses of all coordinates, expressions of `graph`.
+    /// Values with the guesses of all coordinates, expressions of `graph`.
     pub fn of(m: &Mechanism, graph: &Graph, guess: &[Expr]) -> Self {
         let mut found = Self(m.uncertain.iter().map(|parameter| (parameter.symbol, parameter.nominal)).collect());
         let places = found.values(graph, guess);

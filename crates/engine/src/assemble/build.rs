@@ -248,13 +248,13 @@ fn apply_effects<'g>(
 struct Balance<'g> {
     /// M's nonzero entries: row, column, value; none of long trees.
     mass: Vec<(usize, usize, Scalar<'g>)>,
-    /// Which coordinates have inertia.
+    /// Whether each coordinate has inertia.
     massive: Vec<bool>,
     /// M w, with the terms listed at [`System::inertia`].
     inertia: Vec<Scalar<'g>>,
     /// Q
     force: Vec<Scalar<'g>>,
-    /// Where it is not positive, nothing acts that acts under conditions.
+    /// If it is not positive, no force acts that acts under conditions.
     active_condition: Option<Scalar<'g>>,
     /// Generalised forces that act under conditions.
     conditional: Vec<Scalar<'g>>,
@@ -263,8 +263,8 @@ struct Balance<'g> {
 }
 
 impl<'g> Balance<'g> {
-    /// With the reactions of inboard joints, which follow from it and go to the mechanism; `closures` are the other
-    /// joints.
+    /// Sums the forces, and adds the reactions of inboard joints, which follow from them, to the mechanism; `closures`
+    /// are the other joints.
     fn of(m: &mut Mechanism<'g, '_>, applied: AppliedForces<'g>, closures: &[usize]) -> Result<Self, BuildError> {
         let g = m.g;
         let mut mass = Vec::new();
@@ -335,7 +335,7 @@ fn add_all<'g>(totals: &mut [Scalar<'g>], parts: Vec<Scalar<'g>>) {
     }
 }
 
-/// Which of some values depend on any of some symbols.
+/// Whether each value depends on any of some symbols.
 fn depend_on<'g>(values: &[Scalar<'g>], symbols: &[Scalar<'g>]) -> Vec<bool> {
     let Some(g) = symbols.first().map(|symbol| symbol.builder()) else { return vec![false; values.len()] };
     let (values, graph) = (Scalar::exprs(values), g.graph());

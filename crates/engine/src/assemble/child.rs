@@ -38,9 +38,9 @@ pub(super) fn constant_matrix(p: Quaternion<'_>) -> Matrix<'_> {
 
 /// A rotation against the parent: as Euler parameters, and in the plane as an angle.
 pub(super) struct RelativeRotation<'g> {
-    /// In space.
+    /// Euler parameters, in space.
     pub euler: Quaternion<'g>,
-    /// In the plane.
+    /// Angle, in the plane.
     pub angle: Scalar<'g>,
 }
 

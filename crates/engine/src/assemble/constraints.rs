@@ -35,7 +35,7 @@ pub struct Constraints<'g> {
 }
 
 impl<'g> Constraints<'g> {
-    /// Those of a mechanism of size `length`. The joints' reactions go to the mechanism; those of inboard joints
+    /// Constraints of a mechanism of size `length`. The joints' reactions go to the mechanism; those of inboard joints
     /// follow from the motion, once the forces are known, and are zero here.
     pub fn of(
         m: &mut Mechanism<'g, '_>,

@@ -70,8 +70,8 @@ pub fn cuts_of_several_axes(questions: &Questions) -> Vec<Vec<usize>> {
     cuts
 }
 
-/// About how many operations a cut takes: those of the elimination of M, and of each closure with the joints of its
-/// loop.
+/// Approximate number of operations that a cut takes: those of the elimination of M, and of each closure with the
+/// joints of its loop.
 fn effort(questions: &Questions) -> usize {
     let description = questions.description;
     let tree = Tree::spanning(questions, |_| true);

@@ -48,7 +48,7 @@ struct Element<'g> {
     length: Scalar<'g>,
     /// μ
     mass: Scalar<'g>,
-    /// In space: ½ L I of each end, kg m².
+    /// ½ L I of each end, kg m², in space.
     section: Option<Vector<'g>>,
 }
 

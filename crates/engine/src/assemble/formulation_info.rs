@@ -1,11 +1,11 @@
-//! By which coordinates equations are written down.
+//! The coordinates in which equations are written down.
 
-/// By which coordinates a motion is described.
+/// The coordinates that describe a motion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FormulationInfo {
-    /// Whether by those of joints, as far as that goes.
+    /// Whether they are those of joints, as far as possible.
     pub joint: bool,
-    /// For people.
+    /// The reason, for users.
     pub why: String,
     /// The joints that close loops of the trees, by number; none in absolute coordinates.
     pub cut: Vec<usize>,

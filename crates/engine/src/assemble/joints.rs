@@ -24,7 +24,7 @@ impl<'g> Mechanism<'g, '_> {
         self.joints[joint].kind.tooth_force(joint, &Motion(self), lambda)
     }
 
-    /// How the teeth of a joint rub.
+    /// Friction of a joint's teeth.
     pub fn meshing(&self, joint: usize) -> Result<Option<Meshing<'g>>, BuildError> {
         self.joints[joint].kind.meshing(joint, &Motion(self))
     }

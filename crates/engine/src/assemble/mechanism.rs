@@ -32,9 +32,9 @@ pub fn dof(coordinate: Coordinate) -> usize {
 /// A coordinate of a joint of a tree that formulas have no name for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RelativeCoordinate {
-    /// About the first or the second axis of two, rad.
+    /// Angle about the first or the second axis of two, rad.
     Angle(usize),
-    /// Along the first or the second direction of a plane, m.
+    /// Displacement along the first or the second direction of a plane, m.
     Displacement(usize),
     /// Euler parameter p0 to p3 of the second frame against the first.
     Euler(usize),
@@ -134,7 +134,7 @@ pub struct Mechanism<'g, 'd> {
     pub coordinate_names: Vec<String>,
     /// Their frames and inertia.
     pub bodies: Vec<Body<'g>>,
-    /// Which bodies are children in joint coordinates.
+    /// The trees of children in joint coordinates.
     pub tree: Tree,
     /// Indices in `q` of the coordinates of joints that are coordinates of their own.
     pub joint_coordinates: BTreeMap<(usize, JointCoordinate), usize>,

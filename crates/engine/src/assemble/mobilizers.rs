@@ -30,7 +30,7 @@ type Rotations<'g> = Vec<(usize, [Vector<'g>; 2])>;
 /// Place in q and direction, in the axes of the parent's frame, of translations.
 type Translations<'g> = Vec<(usize, Vector<'g>)>;
 
-/// How the frames of a joint move against one another.
+/// Relative motion of a joint's frames.
 struct FrameMotion<'g> {
     /// R, as Euler parameters and as a matrix.
     euler: Quaternion<'g>,

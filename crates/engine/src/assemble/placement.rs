@@ -30,7 +30,7 @@ const ANGLE: usize = 2;
 /// A joint as seen from one of its bodies.
 #[derive(Clone, Copy)]
 struct Link {
-    /// Where it is on this body, and where on the other, in each body's frame.
+    /// Its position on this body, and on the other, in each body's frame.
     here: [f64; 2],
     there: [f64; 2],
     other: usize,
@@ -85,7 +85,7 @@ impl Frame {
         at([0.0, 0.0, self.pose[ANGLE]], [length, 0.0])
     }
 
-    /// How high a direction points.
+    /// Height of a direction.
     fn height(self, direction: f64) -> f64 {
         let height = math::sin(direction - self.pose[ANGLE]);
         if self.is_flipped[1] { -height } else { height }

@@ -20,6 +20,6 @@ pub struct EffectPower {
 pub struct PowerBalance {
     /// T, J.
     pub kinetic: Expr,
-    /// By effect, in file order.
+    /// Powers by effect, in file order.
     pub effects: Vec<EffectPower>,
 }

@@ -15,7 +15,7 @@ pub struct Questions<'d> {
     pub modes: Cow<'d, ModesRequest>,
     /// Coordinates in which the equations are written down.
     pub formulation: Formulation,
-    /// By joint, whether its bodies move as one, without a reaction between them; joints beyond the list's end are not
+    /// Whether each joint's bodies move as one, without a reaction between them; joints beyond the list's end are not
     /// merged. A result of `reduce`.
     pub merged: Cow<'d, [bool]>,
     /// Joints that close loops in joint coordinates, though a body could move with them, and no others that could be
@@ -28,7 +28,7 @@ pub struct Questions<'d> {
 }
 
 impl<'d> Questions<'d> {
-    /// Those of the description itself, with nothing merged and an open cut.
+    /// Questions of the description itself, with nothing merged and an open cut.
     pub fn of(description: &'d Description) -> Self {
         Self {
             description,

@@ -12,7 +12,7 @@ pub struct Reaction<'g> {
     pub force: Vector<'g>,
     /// |force|, N; for an `equation` its multiplier.
     pub magnitude: Scalar<'g>,
-    /// About the second point, N m.
+    /// Torque about the second point, N m.
     pub torque: Vector<'g>,
     /// Torque about the joint's axis, N m, if there is no other torque and no force: of a motor and a gear.
     pub about_axis: Option<Scalar<'g>>,

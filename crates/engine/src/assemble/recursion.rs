@@ -31,7 +31,7 @@ use crate::multibody::{Body, Matrix, Quaternion, RelativeMotion, RotationCoordin
 /// Coordinates of a joint that turns by them; no other joint has as many.
 const EULER_PARAMETERS: usize = 4;
 
-/// How a body's frame moves, in its own axes.
+/// Motion of a body's frame, in its own axes.
 #[derive(Clone, Copy)]
 struct Motion<'g> {
     omega: Vector<'g>,
@@ -79,11 +79,11 @@ impl<'g> Motion<'g> {
 
 /// Inertial forces of the bodies of the trees.
 pub struct InertialForces<'g> {
-    /// On each coordinate, n.
+    /// Force on each coordinate, n.
     pub generalised: Vec<Scalar<'g>>,
     /// Wrench on each body, of it and all its children, and of theirs, in its own axes; zero for a root without any.
     pub wrenches: Vec<Wrench<'g>>,
-    /// By body, ω, ω̇ and the acceleration of its origin in its own axes; empty where no child follows from it.
+    /// ω, ω̇ and the acceleration of the origin in the body's own axes, by body; empty if no child follows from it.
     pub motions: Vec<Vec<Scalar<'g>>>,
 }
 

@@ -20,12 +20,12 @@ pub struct InboardAngle<'g, 'd> {
     parent: Option<&'d Formula>,
 }
 
-/// Where the start names a value.
+/// The list in which the start names a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Named {
-    /// In `initial`.
+    /// `initial`.
     Kept,
-    /// In `guess`.
+    /// `guess`.
     Guessed,
 }
 
@@ -59,7 +59,7 @@ impl<'g> Mechanism<'g, '_> {
         })
     }
 
-    /// Where the joints put the coordinates.
+    /// Values of the coordinates once the joints have placed the bodies.
     fn placed(&self, description: &Description, known: &[Option<Scalar<'g>>]) -> Result<Vec<f64>, BuildError> {
         let standing: Vec<_> = description.bodies.iter().map(|body| body.standing).collect();
         if self.is_spatial {

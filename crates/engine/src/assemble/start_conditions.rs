@@ -68,7 +68,7 @@ impl<'g> Mechanism<'g, '_> {
         Ok(conditions)
     }
 
-    /// By how much a body's roll, pitch or yaw is above a value, between −π and π.
+    /// Difference of a body's roll, pitch or yaw from a value, between −π and π.
     fn turn_left(&self, body: usize, angle: usize, value: Scalar<'g>) -> Scalar<'g> {
         let (sin, cos) = rotation::directions(&self.bodies[body].orientation().matrix())[angle];
         let (across, along) = (value.sin(), value.cos());

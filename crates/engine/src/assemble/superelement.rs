@@ -9,11 +9,11 @@ pub struct Superelement<'d> {
     pub effect: usize,
     /// Its nodes and matrices.
     pub inertia: ReducedInertia<'d>,
-    /// As its first node carries it.
+    /// Inertia of the whole body in the axes of its first node.
     pub carried: Carried,
 }
 
-/// Those of a description.
+/// The superelements of a description.
 pub fn superelements(description: &Description) -> Vec<Superelement<'_>> {
     let effects = description.effects.iter().enumerate();
     let found = effects.filter_map(|(effect, kind)| Some((effect, kind.kind.reduced_inertia()?)));

@@ -24,7 +24,7 @@ pub type ByRow<'g> = Vec<(usize, Scalar<'g>)>;
 pub struct Deformation<'g> {
     /// Nodes but the first one, as it sees them.
     pub ends: Vec<End<'g>>,
-    /// By the rows of M.
+    /// u and its derivatives by the rows of M.
     pub values: [ByRow<'g>; 3],
 }
 

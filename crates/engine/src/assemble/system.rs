@@ -43,13 +43,13 @@ pub struct System {
     pub constraints: Vec<ConstraintInfo>,
     /// M(q)'s nonzero entries (row, column, value), both triangles; none of long trees ([`System::mass_entries`]).
     pub mass: Vec<(usize, usize, Expr)>,
-    /// Which coordinates have inertia, n.
+    /// Whether each coordinate has inertia, n.
     pub massive: Vec<bool>,
     /// M w, n; in joint coordinates with velocity-dependent inertial forces and weights, and with those of beams.
     pub inertia: Vec<Expr>,
     /// Q(t, q, v, λ), n, with the velocity-dependent inertial forces and weights that are not in `inertia`.
     pub force: Vec<Expr>,
-    /// Where it is not positive, no conditional effect (a contact, a stop) acts.
+    /// If it is not positive, no conditional effect (a contact, a stop) acts.
     pub active_condition: Option<Expr>,
     /// Part of Q by conditional effects where it is positive, n; included in `force`, under that condition.
     pub conditional: Vec<Expr>,
@@ -59,7 +59,7 @@ pub struct System {
     pub velocity_constraint: Vec<Expr>,
     /// States that change at instants only.
     pub sampled: Vec<SampledState>,
-    /// In joint coordinates the children, parents first.
+    /// The children, parents first; in joint coordinates only.
     pub links: Vec<ChildLink>,
     /// Observed quantities over t, q, v, w, λ and the parameters.
     pub outputs: Vec<OutputInfo>,
@@ -81,9 +81,9 @@ pub struct System {
     pub powers: Option<PowerBalance>,
     /// Parts of the model that are in no equation.
     pub left_out: Vec<Omission>,
-    /// In how many dimensions the bodies move, and why.
+    /// Number of dimensions in which the bodies move, and why.
     pub space: Space,
-    /// By which coordinates, and why.
+    /// Kind of the coordinates, and why.
     pub formulation: FormulationInfo,
 }
 
@@ -100,9 +100,9 @@ pub struct EffectInfo {
     pub expressions: usize,
     /// The distance of two points along which it acts, where it does.
     pub length: Option<Expr>,
-    /// How much room it has, m: none at a start outside of its enclosure.
+    /// Room of the effect, m: none at a start outside of its enclosure.
     pub room: Option<Expr>,
-    /// How deep its surfaces may overlap, where that has a limit.
+    /// Limit of the overlap of its surfaces, if there is one.
     pub overlap: Option<Overlap>,
     /// The gap of its surfaces, m, the gap's rate, m/s, and the force between them, N.
     pub touch: Option<[Expr; 3]>,
@@ -146,7 +146,7 @@ pub struct ChildLink {
     pub coordinates: Vec<usize>,
     /// Place in the constraints of the one on these coordinates alone: the normalisation of Euler parameters.
     pub normalisation: Option<usize>,
-    /// How it moves, and the forces applied to it and to all its children.
+    /// Its motion, and the forces applied to it and to all its children.
     pub values: Vec<Expr>,
     /// The inertial forces and torques of it and of all its children.
     pub inertial_forces: Vec<Expr>,
@@ -253,7 +253,7 @@ pub struct Start {
 pub struct Nearest {
     /// Holds the system's expressions and those of the distances; `None` where the system's own does.
     pub graph: Option<Graph>,
-    /// Over t, q and the parameters.
+    /// The distances, over t, q and the parameters.
     pub distances: Vec<Distance>,
 }
 
@@ -277,7 +277,7 @@ pub struct Distance {
 pub struct StartCondition {
     /// Name and subject.
     pub info: ConstraintInfo,
-    /// Who asks for it.
+    /// Source of the condition.
     pub of: ConditionOf,
     /// Ψ
     pub value: Expr,
@@ -289,7 +289,7 @@ pub struct StartCondition {
     pub velocity: bool,
 }
 
-/// Who asks for a condition of the start.
+/// Source of a condition of the start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ConditionOf {
     /// A beam, which starts straight.

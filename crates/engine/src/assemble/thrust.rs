@@ -11,7 +11,7 @@ pub struct Thrust<'g> {
     pub bodies: [usize; 2],
     /// The point, in the ground's frame, m.
     pub at: Vector<'g>,
-    /// In the ground's axes, N.
+    /// Force in the ground's axes, N.
     pub force: Vector<'g>,
     /// It acts only where this is positive.
     pub condition: Option<Scalar<'g>>,

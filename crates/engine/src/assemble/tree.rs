@@ -45,7 +45,8 @@ impl Tree {
         Self::spanning(questions, |_| false)
     }
 
-    /// As many children as can be, near the roots first. `is_time_independent` says it of the formulas of a mobilizer.
+    /// Makes as many children as possible, near the roots first. `is_time_independent` tests the formulas of a
+    /// mobilizer.
     pub fn spanning(questions: &Questions, mut is_time_independent: impl FnMut(&Mobilizer) -> bool) -> Self {
         let description = questions.description;
         let bodies = &description.bodies;

@@ -33,7 +33,7 @@ impl State {
         Self(values)
     }
 
-    /// At rest at given positions, nominal parameters, t = 0.
+    /// A state at rest at given positions, with nominal parameters, at t = 0.
     pub fn at(system: &System, positions: &[f64]) -> Self {
         let mut state = Self::random(system, 1);
         for symbol in [&system.v, &system.w, &system.lambda].into_iter().flatten().chain([&system.time]) {
