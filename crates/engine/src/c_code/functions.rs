@@ -5,7 +5,7 @@ use symdiff::{CWriter, Tape};
 use super::Code;
 use crate::compile::Tapes;
 
-/// Those that the runtime calls.
+/// The functions that the runtime calls.
 pub(super) fn functions(code: &Code, writer: &mut CWriter) -> String {
     tapes(code).into_iter().map(|(name, tape)| writer.function(name, tape)).collect()
 }

@@ -7,19 +7,19 @@ use crate::simulate::{Controller, Equilibrium, Integration, Needs, Simulator, St
 
 /// The way in which a model is integrated.
 pub(super) struct Method<'c> {
-    /// By the explicit method; else by steps of HHT-I3 on some levels.
+    /// Whether steps are those of the explicit method; else they are those of HHT-I3 on some levels.
     pub is_explicit: bool,
     pub levels: usize,
-    /// Where a tolerance decides the steps.
+    /// Controller of the steps, if a tolerance decides them.
     pub controller: Option<Controller>,
-    /// Where the equations switch, if a tolerance decides the steps.
+    /// Switches of the equations, if a tolerance decides the steps.
     pub switches: Option<&'c SwitchProgram>,
     /// Closes rows that are no step's own.
     pub closure: Option<&'c StartProgram>,
     pub needs: Needs,
     /// Whether steps in singular configurations have a solve of their own.
     pub is_singular: bool,
-    /// Where the start is an equilibrium that other parameters move.
+    /// Equilibrium at the start, if other parameters move it.
     pub equilibrium: Option<&'c Equilibrium>,
     /// Whether states change at instants.
     pub is_sampled: bool,
@@ -39,7 +39,7 @@ fn may_be_singular(program: &Program) -> bool {
 }
 
 impl<'c> Method<'c> {
-    /// For the steps of a run, with `parameters` parameters.
+    /// Method of the steps of a run, with `parameters` parameters.
     ///
     /// # Errors
     /// Where equations of rows have no factors.
@@ -89,7 +89,7 @@ impl<'c> Method<'c> {
         self.accelerates() || self.projects || (self.closure.is_some() && of_closure)
     }
 
-    /// Those parts of the runtime that are called, in the order in which they refer to one another; with names of the
+    /// The parts of the runtime that are called, in the order in which they refer to one another; with names of the
     /// model's parts as macros.
     pub fn runtime(&self) -> String {
         let explicit = self.is_explicit;

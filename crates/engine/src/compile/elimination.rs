@@ -15,7 +15,7 @@ use super::sparse_lu::{Factors, NoFactors, Numbers, PivotRule, Pivoting, factori
 use crate::assemble::ConstraintId;
 use crate::compile::tuning::TUNING;
 
-/// How pivots are chosen.
+/// Rule for the choice of pivots.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PivotChoice<'a> {
     /// Constraints that others imply.

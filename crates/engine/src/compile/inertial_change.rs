@@ -5,7 +5,7 @@ use symdiff::{Expr, Graph};
 
 use crate::assemble::System;
 
-/// With M; `new` and `old` are a₊ and a.
+/// The change by M; `new` and `old` are a₊ and a.
 pub(super) fn by_mass(
     system: &System,
     graph: &mut Graph,

@@ -32,7 +32,7 @@ pub(super) enum LinkElimination {
     Links,
 }
 
-/// Which eliminations are worth a look.
+/// Chooses the eliminations that are tried.
 pub(super) fn elimination(system: &System, has_redundant: bool) -> LinkElimination {
     let n = system.q.len();
     let is_sparse = !system.is_mass_left_out() && system.mass.len() < TUNING.coupled * n;

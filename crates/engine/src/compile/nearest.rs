@@ -83,7 +83,7 @@ impl LeastSquares {
     }
 }
 
-/// Those of the start that are open in a way.
+/// Distances of the start that are open in a way.
 fn distances(system: &System, is_open: fn(&Distance) -> bool) -> Vec<&Distance> {
     let nearest = system.start.nearest.iter();
     nearest.flat_map(|nearest| &nearest.distances).filter(|distance| is_open(distance)).collect()

@@ -22,7 +22,7 @@ pub struct WatchedPivot {
     pub largest_inverse: f64,
 }
 
-/// Which lanes solve with a version of the factors: decided by the active condition at the iterate of the
+/// Lanes that solve with a version of the factors: determined by the active condition at the iterate of the
 /// factorisation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FactorMode {
@@ -138,8 +138,8 @@ impl Program {
         &self.lowered.kernels[MATRIX]
     }
 
-    /// In the correction's first n registers the part of a₊ − a that moves the mechanism, J⁻¹(M (a₊ − a), 0), with the
-    /// last factors: after the iteration, and before the state is advanced.
+    /// Writes the part of a₊ − a that moves the mechanism into the correction's first n registers, J⁻¹(M (a₊ − a), 0),
+    /// with the last factors: after the iteration, and before the state is advanced.
     pub fn estimate(&self) -> &Tape {
         &self.lowered.kernels[ESTIMATE]
     }

@@ -40,7 +40,7 @@ pub enum Scheme {
     TrapezoidalIndex2,
 }
 
-/// Which derivative of the constraints a step makes zero.
+/// The derivative of the constraints that a step makes zero.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ConstraintLevel {
     /// Φ(q₊, t₊) = 0.

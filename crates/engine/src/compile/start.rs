@@ -129,7 +129,7 @@ pub fn compile_nearest_start(
 struct Known<'m> {
     /// Coordinates that do not change.
     given: &'m [bool],
-    /// How many of the rows below the metric are constraints.
+    /// Number of constraints among the rows below the metric.
     constraints: usize,
     /// Coordinates and the constraints that define them.
     pairs: &'m [(usize, usize)],

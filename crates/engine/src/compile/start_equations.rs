@@ -39,7 +39,7 @@ pub(super) struct StartEquations {
     pub rate_of_rate: Vec<Expr>,
 }
 
-/// Which closure: that of positions or that of velocities.
+/// The closure of positions or that of velocities.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum ClosureOf {
     /// Φ and conditions on positions.
@@ -49,7 +49,7 @@ pub(super) enum ClosureOf {
 }
 
 impl ClosureOf {
-    /// How many constraints are in it.
+    /// Number of constraints in it.
     pub fn constraints(self, system: &System) -> usize {
         match self {
             Self::Positions => system.constraint.len(),
@@ -67,7 +67,7 @@ impl ClosureOf {
 }
 
 impl StartEquations {
-    /// Over the system's own symbols.
+    /// Equations over the system's own symbols.
     pub fn new(system: &System, graph: &mut Graph) -> Self {
         let (motion, jacobian) = equations_of_motion(system, graph);
         let rate = constraint_rates(system, graph);

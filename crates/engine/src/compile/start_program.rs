@@ -41,7 +41,7 @@ pub struct SampledValue {
 }
 
 impl SampledValue {
-    /// Those of a system, whose new values are in these registers.
+    /// The sampled values of a system, whose new values are in these registers.
     pub(super) fn all(system: &System, layout: &Layout, registers: Vec<usize>) -> Vec<Self> {
         let states = system.sampled.iter().zip(registers);
         let value = |(sampled, value): (&SampledState, usize)| Self {

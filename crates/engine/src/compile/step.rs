@@ -42,7 +42,7 @@ pub fn compile(
     }
 }
 
-/// With the Newton matrix eliminated as a whole, or link by link.
+/// Compiles with the Newton matrix eliminated as a whole, or link by link.
 fn compile_as(
     system: &System,
     scheme: Scheme,
@@ -127,7 +127,7 @@ fn factors(
     };
     let versions = versions(graph, newton, &numbers, inputs).and_then(|[active, inactive]| {
         let inactive_numbers = sample_numbers(graph, &inactive.0, inputs, samples);
-        // Where elimination needs the conditional forces, there is no second version.
+        // If elimination needs the conditional forces, there is no second version.
         let active = factorised(graph, &active.0, &active.1).ok()?;
         let inactive = factorised(graph, &inactive.0, &inactive_numbers).ok()?;
         is_worthwhile(graph, inputs, &active, &inactive).then_some((active, inactive))
@@ -193,8 +193,8 @@ fn versions(
     (versions[0].0 != versions[1].0).then_some(versions)
 }
 
-/// By coordinate, the first of those that M couples it with: the coordinates of a body, or of a tree of bodies. If M is
-/// omitted, all are one block.
+/// For each coordinate, the first of those that M couples it with: the coordinates of a body, or of a tree of bodies.
+/// If M is omitted, all are one block.
 fn mass_blocks(system: &System) -> Vec<usize> {
     if system.is_mass_left_out() {
         return vec![0; system.q.len()];

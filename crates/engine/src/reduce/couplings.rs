@@ -68,14 +68,14 @@ impl Dependencies {
         }
     }
 
-    /// Those of several formulas.
+    /// Dependencies of several formulas.
     pub fn by<'f>(description: &Description, formulas: impl IntoIterator<Item = &'f Formula>) -> Self {
         let mut named = Self::default();
         formulas.into_iter().for_each(|formula| named.add(description, formula));
         named
     }
 
-    /// Those of a joint or an effect: of its formulas, and the bodies and points between which it acts.
+    /// Dependencies of a joint or an effect: of its formulas, and the bodies and points between which it acts.
     fn by_part<'f>(
         description: &Description,
         formulas: impl IntoIterator<Item = &'f Formula>,
@@ -115,7 +115,7 @@ pub struct Couplings {
     pub outputs: Vec<Dependencies>,
     /// Whether each effect acts on every body without coupling them.
     pub fields: Vec<bool>,
-    /// For each body that is merged with the ground, directly or through others, the joint towards the ground.
+    /// The joint towards the ground, for each body that is merged with the ground, directly or through others.
     pub grounded: Vec<Option<usize>>,
     /// Whether each joint is such a joint.
     joins_ground: Vec<bool>,
@@ -205,7 +205,7 @@ impl Couplings {
     }
 }
 
-/// For each body that is merged with the ground, the joint towards the ground.
+/// The joint towards the ground, for each body that is merged with the ground.
 fn grounded(description: &Description, merged: &[bool]) -> Vec<Option<usize>> {
     let mut welds = vec![Vec::new(); description.bodies.len()];
     for (index, (joint, &merged)) in description.joints.iter().zip(merged).enumerate() {

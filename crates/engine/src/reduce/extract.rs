@@ -15,7 +15,7 @@ struct Kept {
     parameters: Vec<bool>,
 }
 
-/// By body, whether `initial` gives its position and orientation.
+/// Whether `initial` gives the position and orientation of each body.
 fn placed(d: &Description) -> Vec<bool> {
     let mut coordinates = vec![0; d.bodies.len()];
     let mut is_turned = vec![!d.space.spatial; d.bodies.len()];
@@ -131,8 +131,8 @@ pub fn narrow(description: &mut Description, left: &[usize]) {
     description.bounds.methods_mut().into_iter().for_each(|(_, method)| method.narrow(left));
 }
 
-/// By parameter, whether a requirement of numbers of a motion or of results names it, which no equation may:
-/// `stroke <= room`. All are required by a black box.
+/// Whether a requirement of numbers of a motion or of results names each parameter, which no equation may: `stroke <=
+/// room`. All are required by a black box.
 pub fn required(description: &Description) -> Vec<bool> {
     if description.black_box.is_some() {
         // The program gets all of them.

@@ -25,7 +25,7 @@ use questions::{Question, questions, tie};
 pub use extract::{narrow, required};
 pub use welds::Weld;
 
-/// Which reductions are applied; all by default.
+/// Reductions that are applied; all by default.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Choices {
     /// Whether welded bodies are merged.
@@ -47,7 +47,7 @@ impl Default for Choices {
 pub struct Subsystem {
     /// A model of its own, with the name of the whole model.
     pub description: Description,
-    /// By joint, whether its bodies move as one, so that there is no reaction between them.
+    /// Whether each joint's bodies move as one, so that there is no reaction between them.
     pub merged: Vec<bool>,
     /// Numbers of its outputs in the whole model.
     pub outputs: Vec<usize>,
@@ -62,7 +62,7 @@ pub struct Subsystem {
 /// The parts of a model that are simulated.
 #[derive(Clone, Debug)]
 pub struct Reduction {
-    /// In the order of their first outputs.
+    /// Subsystems in the order of their first outputs.
     pub subsystems: Vec<Subsystem>,
     /// Parts that no output depends on, by kind and name: `body pendulum`.
     pub left_out: Vec<String>,

@@ -93,7 +93,7 @@ fn nodes(description: &Description) -> Vec<bool> {
     nodes
 }
 
-/// Which bodies have values among these, by their own coordinates.
+/// Whether each body has values among these, by its own coordinates.
 fn named(description: &Description, values: &[StartValue]) -> Vec<bool> {
     let mut named = vec![false; description.bodies.len()];
     for value in values {

@@ -19,9 +19,9 @@ const PARAMETER: &str = "causality=\"parameter\" variability=\"fixed\" initial=\
 /// A variable of the unit.
 struct Variable {
     reference: usize,
-    /// As it is in XML.
+    /// Name as written in XML.
     name: String,
-    /// How it changes.
+    /// Attributes of its causality and variability.
     kind: &'static str,
     /// Attributes of its values: start and unit.
     values: String,

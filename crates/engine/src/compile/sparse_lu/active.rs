@@ -22,7 +22,7 @@ pub struct Entry {
 /// Rows and columns not yet eliminated.
 pub struct Active {
     pub rows: Vec<BTreeMap<usize, Entry>>,
-    /// By column, the rows with an entry there.
+    /// The rows with an entry in each column.
     pub columns: Vec<BTreeSet<usize>>,
     pub sparsest_rows: BTreeSet<Key>,
     pub sparsest_columns: BTreeSet<Key>,

@@ -37,7 +37,7 @@ pub struct PivotRule<'a> {
     pub stages: Stages,
     /// The stage at which operations are saved.
     pub costly: usize,
-    /// Which entries may be pivots.
+    /// Entries that may be pivots.
     pub pivoting: Pivoting<'a>,
 }
 

@@ -8,7 +8,7 @@ use super::active::{Active, Entry};
 use super::ordering::block_order;
 use crate::compile::tuning::TUNING;
 
-/// Which entries may be pivots.
+/// Entries that may be pivots.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pivoting<'m> {
     /// Any entry, by cost and size.
@@ -23,7 +23,7 @@ pub enum Pivoting<'m> {
     Symmetric {
         /// Whether each coordinate has inertia; as many as there are coordinates.
         massive: &'m [bool],
-        /// By coordinate, the first of those that M couples it with.
+        /// The first of the coordinates that M couples each coordinate with.
         blocks: &'m [usize],
     },
     /// The diagonal only, the rows before `constraints` first: for quasi-definite matrices, where this order exists
@@ -79,7 +79,7 @@ pub struct PivotSearch<'m> {
     ready: BTreeSet<usize>,
     /// The second pivot of a pair, to be taken next.
     second: Option<(usize, usize)>,
-    /// For [`Pivoting::Diagonal`], how many pairs have been taken.
+    /// Number of pairs that have been taken, for [`Pivoting::Diagonal`].
     paired: usize,
 }
 

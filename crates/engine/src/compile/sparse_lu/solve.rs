@@ -24,7 +24,7 @@ pub struct Pivot {
 /// A factorised matrix.
 #[derive(Clone, Debug)]
 pub struct Factors {
-    /// In elimination order.
+    /// Pivots in elimination order.
     pub pivots: Vec<Pivot>,
     /// Growth factor: the largest scaled number of the elimination over the largest of the matrix, at the worst pivot
     /// sample. Rounding errors may grow by it.
