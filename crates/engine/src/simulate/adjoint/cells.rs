@@ -15,14 +15,14 @@ pub struct CellFunctions<'f> {
 #[derive(Clone, Debug)]
 pub(in crate::simulate) struct TileInputs {
     ends: Vec<f64>,
-    /// By cell and input, lane by lane.
+    /// Values by cell and input, lane by lane.
     values: Vec<f64>,
     /// Values of a cell.
     size: usize,
 }
 
 impl TileInputs {
-    /// Those of some gradients, one a lane.
+    /// Functions of some gradients, one a lane.
     pub fn of(functions: &CellFunctions<'_>, lanes: &[usize]) -> Self {
         let cells = functions.ends.len();
         let inputs = functions.values.first().map_or(0, |values| values.len() / cells.max(1));

@@ -29,7 +29,7 @@ pub(in crate::simulate) struct TilePath<S> {
     /// The states from this one on, one after the other.
     first: usize,
     window: Vec<f64>,
-    /// By the number of steps before: states before they changed at instants.
+    /// States before they changed at instants, with the number of steps before.
     unchanged: Vec<(usize, Vec<f64>)>,
 }
 

@@ -30,7 +30,7 @@ pub(in crate::simulate) struct RowAdjoints<'s> {
 }
 
 impl<'s> RowAdjoints<'s> {
-    /// For states that steps by the scheme end with: as [`RowAccelerations`](super::super::ensemble) observes them.
+    /// Rows at states that steps by the scheme end with: as [`RowAccelerations`](super::super::ensemble) observes them.
     pub fn of_steps(simulator: &'s Simulator, start: &Tile) -> Self {
         let memory = StartAdjoints::new(simulator, &simulator.start, start);
         Self {
@@ -42,7 +42,7 @@ impl<'s> RowAdjoints<'s> {
         }
     }
 
-    /// For motions that are combined or interpolated: as [`RowClosure`](super::super::ensemble) closes them.
+    /// Rows of motions that are combined or interpolated: as [`RowClosure`](super::super::ensemble) closes them.
     pub fn closing(simulator: &'s Simulator, program: &'s StartProgram, start: &Tile) -> Self {
         let needs = Needs::of(simulator);
         let memory = StartAdjoints::new(simulator, program, start);

@@ -25,7 +25,7 @@ pub(in crate::simulate) struct StartAdjoints<'s> {
 }
 
 impl<'s> StartAdjoints<'s> {
-    /// For a program of a mechanism and the parameters of an assembled tile.
+    /// Adjoints of a program of a mechanism, with the parameters of an assembled tile.
     pub fn new(simulator: &'s Simulator, program: &'s StartProgram, start: &Tile) -> Self {
         let parameters = program.layout.parameters.start;
         let parameter = |parameter: usize, lane: usize| start.lane(parameters + parameter)[lane];
@@ -91,12 +91,12 @@ impl<'s> StartAdjoints<'s> {
         own.iter_mut().zip(adjoints).for_each(|(own, adjoint)| *own += adjoint);
     }
 
-    /// Through a tape.
+    /// Pulls adjoints through a tape.
     pub fn pull(&mut self, tape: &Tape) {
         self.adjoints.pull(tape, self.assembly.tile_mut());
     }
 
-    /// Through corrections of the values from register `first` on, which have settled.
+    /// Pulls adjoints through corrections of the values from register `first` on, which have settled.
     pub fn pull_corrections(&mut self, tape: &Tape, first: usize, count: usize, times: usize) {
         let correction = self.program.layout.correction.start;
         for _ in 0..times {
@@ -118,8 +118,8 @@ impl<'s> StartAdjoints<'s> {
         unknowns.iter_mut().zip(corrections).for_each(|(value, correction)| *value += *correction);
     }
 
-    /// Through the accelerations and multipliers that were solved for last, to positions and velocities. The tile holds
-    /// the state from before, and has run no other tape since.
+    /// Pulls adjoints through the accelerations and multipliers that were solved for last, to positions and velocities.
+    /// The tile holds the state from before, and has run no other tape since.
     pub fn pull_solved(&mut self) {
         let layout = self.layout();
         let unknowns = layout.w.start..layout.lambda.end;
@@ -129,7 +129,7 @@ impl<'s> StartAdjoints<'s> {
         self.take(unknowns);
     }
 
-    /// Through accelerations and multipliers, which the tile holds, to positions and velocities.
+    /// Pulls adjoints through accelerations and multipliers, which the tile holds, to positions and velocities.
     pub fn pull_acceleration(&mut self) {
         let unknowns = self.program.layout.w.start..self.program.layout.lambda.end;
         self.pull_corrections(self.program.acceleration(), unknowns.start, unknowns.len(), corrections(1));
@@ -144,7 +144,7 @@ impl<'s> StartAdjoints<'s> {
         Closing { positions, velocities }
     }
 
-    /// Through the closure of a motion, to the one that was not closed.
+    /// Pulls adjoints through the closure of a motion, to the one that was not closed.
     pub fn pull_closing(&mut self, closing: &Closing) {
         let (program, layout) = (self.program, self.layout());
         self.pull_way(program.projection(), layout.v.start, &closing.velocities);
@@ -173,7 +173,7 @@ impl<'s> StartAdjoints<'s> {
         }
     }
 
-    /// Through a = w(t + shift), as [`Assembly::shift_accelerations`] makes it of the state in the tile.
+    /// Pulls adjoints through a = w(t + shift), as [`Assembly::shift_accelerations`] makes it of the state in the tile.
     fn pull_shift(&mut self, time: f64, shift: f64) {
         let layout = self.layout();
         let [q, v, w] = [&layout.q, &layout.v, &layout.w].map(Range::clone);
@@ -212,15 +212,16 @@ impl<'s> StartAdjoints<'s> {
         self.values(layout.state()).to_vec()
     }
 
-    /// Through accelerations that follow from the positions and velocities of a state (q, v, a, w, λ), and a. Their
-    /// adjoints, and their shares of those of positions and velocities, are in the adjoints.
+    /// Pulls adjoints through accelerations that follow from the positions and velocities of a state (q, v, a, w, λ),
+    /// and a. Their adjoints, and their shares of those of positions and velocities, are in the adjoints.
     pub fn pull_anew(&mut self, time: f64, state: &[f64], shift: f64) {
         self.set(time, self.layout().q.start, state);
         self.pull_shift(time, shift);
         self.pull_acceleration();
     }
 
-    /// Through the new values of states that change at a time, to the state before (all but a: q, v and w, λ).
+    /// Pulls adjoints through the new values of states that change at a time, to the state before (all but a: q, v and
+    /// w, λ).
     pub fn pull_sampling(&mut self, time: f64) {
         let program = self.program;
         let due = || program.sampled.iter().filter(|sampled| sampled.is_due(time));
@@ -231,8 +232,8 @@ impl<'s> StartAdjoints<'s> {
         self.pull(program.sampling());
     }
 
-    /// Through the start, given its state (q, v, a, w, λ) and the shift of a, if steps have one. It leaves the
-    /// adjoints of the positions that it begins with, and those of parameters.
+    /// Pulls adjoints through the start, given its state (q, v, a, w, λ) and the shift of a, if steps have one. It
+    /// leaves the adjoints of the positions that it begins with, and those of parameters.
     pub fn pull_start(&mut self, state: &[f64], shift: Option<f64>) {
         let (program, layout) = (self.program, self.layout());
         match shift {

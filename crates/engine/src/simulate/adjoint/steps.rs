@@ -38,7 +38,7 @@ pub(super) struct TileSteps<'s> {
 }
 
 impl<'s> TileSteps<'s> {
-    /// From an assembled tile.
+    /// Steps from an assembled tile.
     pub fn new(simulator: &'s Simulator, start: &Tile, steps: Vec<(f64, f64)>, inputs: Option<&'s TileInputs>) -> Self {
         let mut stepper = Stepper::new(&simulator.program, start);
         // Rounding of accelerations is that of positions over h², and so is that of derivatives.
@@ -70,7 +70,7 @@ impl<'s> TileSteps<'s> {
         }
     }
 
-    /// Where lanes were lost.
+    /// Times at which lanes were lost.
     pub fn lost(&self) -> &[Option<f64>] {
         &self.lost
     }
@@ -125,7 +125,7 @@ pub(super) struct StepAdjoints<'s> {
 }
 
 impl<'s> StepAdjoints<'s> {
-    /// Over the path of an assembled tile.
+    /// Adjoints over the path of an assembled tile.
     pub fn new(simulator: &'s Simulator, start: &Tile, path: TilePath<TileSteps<'s>>) -> Self {
         let program = &simulator.program;
         let tile = path.stepping().stepper.tile().clone();
@@ -149,8 +149,8 @@ impl<'s> StepAdjoints<'s> {
         &self.kernel
     }
 
-    /// From the rows, the last first, to the start: adjoints of the start's positions (n lines) and of the parameters
-    /// (k lines).
+    /// Pulls adjoints from the rows, the last first, to the start: returns those of the start's positions (n lines) and
+    /// of the parameters (k lines).
     pub fn pull(&mut self, rows: &[RowSeeds<'_>]) -> (Vec<f64>, Vec<f64>) {
         let layout = &self.program.layout;
         let mut rows = rows.iter().peekable();
@@ -179,7 +179,7 @@ impl<'s> StepAdjoints<'s> {
         (positions, parameters)
     }
 
-    /// To the beginning of a step. `size` is the length of the step behind it.
+    /// Pulls adjoints to the beginning of a step. `size` is the length of the step behind it.
     fn pull_step(&mut self, step: usize, size: &mut f64) {
         let layout = &self.program.layout;
         let (h, end) = self.path.stepping().steps[step];

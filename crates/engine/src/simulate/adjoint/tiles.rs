@@ -32,9 +32,9 @@ pub struct Gradient {
     pub value: f64,
     /// The output of each term, SI.
     pub terms: Vec<f64>,
-    /// By each parameter (k), SI. Not finite where the output has no derivative.
+    /// Derivatives by each parameter (k), SI. Not finite where the output has no derivative.
     pub by_parameters: Vec<f64>,
-    /// By the inputs in each cell, where functions of the time are given.
+    /// Derivatives by the inputs in each cell, if functions of the time are given.
     pub by_inputs: Vec<f64>,
     /// End of the first step, s, that does not converge or is singular, if there is one: then neither is known.
     pub lost: Option<f64>,
@@ -230,7 +230,7 @@ impl TileOf<'_> {
         self.lanes.iter().enumerate().flat_map(of_lane).collect()
     }
 
-    /// By the scheme on `levels` levels.
+    /// Gradients by the scheme on `levels` levels.
     fn of_scheme(
         &mut self,
         levels: usize,
@@ -302,7 +302,7 @@ impl TileOf<'_> {
         (vec![0.0; self.simulator.system.parameters.len() * self.lanes.len()], TileKernel::default())
     }
 
-    /// By the explicit method.
+    /// Gradients by the explicit method.
     fn of_explicit(&mut self, values: &mut [Vec<f64>], inputs: Option<&TileInputs>) -> Result<ByAll, NoGradient> {
         let Self { simulator, schedule, .. } = *self;
         let start = self.assemble(0.0)?;

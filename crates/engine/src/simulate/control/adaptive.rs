@@ -46,7 +46,7 @@ pub struct Attempt {
 }
 
 impl<'s> Adaptive<'s> {
-    /// From the states of a stepper; the first step tried has the length `h`.
+    /// Starts from the states of a stepper; the first step tried has the length `h`.
     pub fn new(simulator: &'s Simulator, mut stepper: Stepper<'s>, controller: Controller, h: f64) -> Self {
         stepper.estimate_errors();
         let watch = simulator.switches().map(|program| SwitchWatch::new(program, stepper.tile()));

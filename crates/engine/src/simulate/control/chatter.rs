@@ -21,7 +21,7 @@ struct Lane {
 }
 
 impl Chatter {
-    /// Before the first step.
+    /// No switches, before the first step.
     pub fn new(width: usize) -> Self {
         Self { lanes: vec![Lane::default(); width] }
     }

@@ -39,7 +39,7 @@ impl Controller {
         TUNING.smallest_step * self.duration
     }
 
-    /// For steps that are divided into `parts` parts: the scheme is of second order.
+    /// Controller of steps that are divided into `parts` parts: the scheme is of second order.
     #[must_use]
     pub fn for_parts(self, parts: usize) -> Self {
         Self { tolerance: self.tolerance / (parts as f64).powi(2), ..self }

@@ -4,23 +4,23 @@ use serde::{Deserialize, Serialize};
 
 use crate::numerics::STEP_NODES;
 
-/// How the steps of a schedule are taken.
+/// Method of a schedule's steps.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Integration {
-    /// By the scheme, once.
+    /// The scheme, once.
     #[default]
     Plain,
-    /// By the scheme on several levels, each with the steps of the one before halved, combined so that the leading
-    /// terms of their errors cancel.
+    /// The scheme on several levels, each with the steps of the one before halved, combined so that the leading terms
+    /// of their errors cancel.
     Extrapolated {
         /// 2, 3 or 4.
         levels: usize,
     },
-    /// By Dormand and Prince's explicit method of order 8.
+    /// Dormand and Prince's explicit method of order 8.
     Explicit,
-    /// By the same method in segments that end at events.
+    /// The same method in segments that end at events.
     Segments,
-    /// By the scheme on several levels, in segments that end at events.
+    /// The scheme on several levels, in segments that end at events.
     SchemeSegments {
         /// 1 to 4; 1 is the scheme itself.
         levels: usize,
@@ -28,7 +28,7 @@ pub enum Integration {
 }
 
 impl Integration {
-    /// With `levels` levels; one is the scheme itself.
+    /// Integration with `levels` levels; one is the scheme itself.
     pub fn of_levels(levels: usize) -> Self {
         if levels > 1 { Self::Extrapolated { levels } } else { Self::Plain }
     }
@@ -63,7 +63,7 @@ impl Integration {
         }
     }
 
-    /// For summaries; `None` for the scheme itself.
+    /// Name for summaries; `None` for the scheme itself.
     pub fn name(self) -> Option<String> {
         match self {
             Self::Plain => None,

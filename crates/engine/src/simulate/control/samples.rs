@@ -18,7 +18,7 @@ use crate::simulate::time_functions::{ResolvingSteps, TimeFunctions};
 /// A schedule from a tolerance, and the reason if it ends before the duration.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ToleranceSchedule {
-    /// Up to the last row that a controlling sample reached.
+    /// Schedule up to the last row that a controlling sample reached.
     pub schedule: Schedule,
     /// Rows that all controlling samples have reached.
     pub complete_rows: usize,

@@ -19,20 +19,20 @@ pub struct Schedule {
     /// Time of the last row, s.
     pub(super) end: f64,
     pub(super) steps: StepList,
-    /// How the steps are taken.
+    /// Method of the steps.
     pub integration: Integration,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) enum StepList {
-    /// This many steps of equal length between rows, and those before the last row.
+    /// Steps of equal length, this many between rows, and those before the last row.
     Fixed { step: f64, per_row: usize, last: LastSteps },
-    /// For each row but the first, the times at which the steps before it end; the last is the row's own.
+    /// The times at which the steps before each row but the first end; the last is the row's own.
     Listed(Vec<Vec<f64>>),
     /// The times at which steps end, which pass over rows; the last is the end of the run. Those by these numbers are
     /// times at which equations switch: all schedules of the motion keep them.
     Passing { ends: Vec<f64>, kept: Vec<usize> },
-    /// Those between events, whose times are each sample's own.
+    /// Steps between events, whose times are each sample's own.
     Segmented(Segments),
 }
 

@@ -15,19 +15,19 @@ pub struct SwitchWatch<'s> {
 }
 
 impl<'s> SwitchWatch<'s> {
-    /// For the samples of a tile.
+    /// Watches the samples of a tile.
     pub fn new(program: &'s SwitchProgram, samples: &Tile) -> Self {
         Self { program, tile: program.memory_for(samples), before: Vec::new(), after: Vec::new() }
     }
 
-    /// Before a step.
+    /// Evaluates the switches before a step.
     pub fn begin(&mut self, states: &Tile) {
         let mut values = std::mem::take(&mut self.before);
         self.evaluate(states, &mut values);
         self.before = values;
     }
 
-    /// After a step.
+    /// Evaluates the switches after a step.
     pub fn end(&mut self, states: &Tile) {
         let mut values = std::mem::take(&mut self.after);
         self.evaluate(states, &mut values);

@@ -39,8 +39,8 @@ tuning! {
         finer_steps: f64 = 2.7, moves "steps that are refined";
         /// The first step, as a share of the output step.
         first_step: f64 = 1e-2, moves "the steps of runs with chosen steps";
-        /// Where a run ends, its constraints are examined this share of an output step later: a residual needs time to
-        /// grow.
+        /// At the end of a run, its constraints are examined this share of an output step later: a residual needs time
+        /// to grow.
         look_ahead: f64 = 0.5, moves "the steps of runs with chosen steps";
         /// Most steps of a schedule: where it needs more, no step resolves the motion.
         most_steps: usize = 2_000_000, moves "which runs are given up";

@@ -10,7 +10,7 @@ use crate::simulate::start::Assembly;
 /// A constraint that cannot be closed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OpenConstraint {
-    /// Which.
+    /// The constraint.
     pub constraint: ConstraintId,
     /// The size of the smallest residual found, in the constraint's unit.
     pub residual: f64,

@@ -27,13 +27,13 @@ pub struct OverlapWatch<'s> {
 }
 
 impl<'s> OverlapWatch<'s> {
-    /// For the samples of a tile, with the gaps and the remaining overlaps.
+    /// Watches the samples of a tile, with the gaps and the remaining overlaps.
     pub fn new(program: &'s SwitchProgram, stepper: &Stepper) -> Self {
         let contacts = program.switches.len() / 2;
         Self { watch: SwitchWatch::new(program, stepper.tile()), contacts, found: None }
     }
 
-    /// Before a step.
+    /// Evaluates the gaps before a step.
     pub fn begin(&mut self, stepper: &Stepper) {
         if self.found.is_none() {
             self.watch.begin(stepper.tile());

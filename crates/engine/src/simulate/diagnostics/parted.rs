@@ -33,7 +33,7 @@ pub struct PartingWatch<'s> {
 }
 
 impl<'s> PartingWatch<'s> {
-    /// Nothing where no constraint is redundant, or none depends on the time: those that agree then stay in agreement.
+    /// `None` if no constraint is redundant, or none depends on the time: those that agree then stay in agreement.
     /// `state` is that of the sample (the layout's registers).
     pub fn new(simulator: &'s Simulator, layout: &'s Layout, state: Vec<f64>) -> Option<Self> {
         let all = &simulator.system.constraint;

@@ -41,7 +41,7 @@ pub fn undetermined_outputs(
     (0..outputs.len()).filter(depends).map(OutputId::new).collect()
 }
 
-/// This many left null vectors of Φ_q, one a column.
+/// `count` left null vectors of Φ_q, one a column.
 fn null_vectors(system: &System, start: &StartProgram, state: &[f64], count: usize) -> DMatrix<f64> {
     let mut jacobian: DMatrix<f64> = DMatrix::zeros(system.lambda.len(), system.q.len());
     for (row, entries) in jacobian_rows(system, start, state).into_iter().enumerate() {

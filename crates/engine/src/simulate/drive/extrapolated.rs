@@ -64,7 +64,7 @@ pub struct ClosedRows<R> {
 #[derive(Debug)]
 pub struct Extrapolated<'s, T, R> {
     simulator: &'s Simulator,
-    /// With the steps of the schedule, halved, halved again, …
+    /// Runs with the steps of the schedule, halved, halved again, …
     levels: Vec<TiledRun<'s, T>>,
     weights: Vec<f64>,
     closures: Vec<ClosedRows<R>>,
@@ -75,7 +75,7 @@ pub struct Extrapolated<'s, T, R> {
 }
 
 impl<'s, T: RowTile<'s>, R: RowState> Extrapolated<'s, T, R> {
-    /// With `levels` levels; `of_level` gives the run of each by its share of the schedule's steps.
+    /// Runs on `levels` levels; `of_level` gives the run of each by its share of the schedule's steps.
     ///
     /// # Errors
     /// Those of the runs.

@@ -25,7 +25,7 @@ pub trait RowTile<'s>: Debug + Send {
     /// Numbers of the samples in the first lanes. Lanes beyond them repeat the last one.
     fn samples(&self) -> Vec<usize>;
 
-    /// Before the first of some rows.
+    /// Prepares some rows, before the first one.
     fn begin(&mut self, _plan: &Self::Plan<'_>, _observed: Observed) {}
 
     /// Takes the steps to a row, which follows the row of the last call (row 0 is the start). Returns the lanes that

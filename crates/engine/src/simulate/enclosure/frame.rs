@@ -56,7 +56,7 @@ pub(super) struct EnclosureFrame {
 }
 
 impl EnclosureFrame {
-    /// At the start: `tangent` is ∂q/∂(independent coordinates), n × f, and `push` is P, n × m, in SI units.
+    /// The frame at the start: `tangent` is ∂q/∂(independent coordinates), n × f, and `push` is P, n × m, in SI units.
     pub fn new(
         space: &ModelSpace,
         units: &Units,

@@ -173,7 +173,7 @@ pub struct Enclosure<'s> {
     solves_accelerations: bool,
     memory: ModelMemory<'s>,
     gains: Gains,
-    /// Those with which the next q̂ and v̂ are made.
+    /// Gains of the next q̂ and v̂.
     next: NextGains,
     /// q̂, v̂, w in that order, 3n: polynomials only.
     state: Models,

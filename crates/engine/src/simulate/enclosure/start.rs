@@ -93,8 +93,8 @@ pub(super) fn assemble(
     Ok(())
 }
 
-/// Where all parameters of an orientation are given, the one that is largest at the nominal start follows from the
-/// others by the normalisation: given numbers fulfil it but for their rounding.
+/// If all parameters of an orientation are given, the one that is largest at the nominal start follows from the others
+/// by the normalisation: given numbers fulfil it but for their rounding.
 pub(super) fn leave_to_normalisations(system: &mut System, nominal: &[f64]) {
     for (info, &constraint) in system.constraints.iter().zip(&system.constraint) {
         if info.unit != ResidualUnit::Number || !info.name.ends_with(".norm") {

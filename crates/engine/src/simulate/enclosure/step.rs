@@ -22,7 +22,7 @@ impl<'s> Enclosure<'s> {
         self.program.layout.q.len()
     }
 
-    /// From the start's q, v, a, w to the first q̂, v̂, w and their radii.
+    /// Goes from the start's q, v, a, w to the first q̂, v̂, w and their radii.
     pub(super) fn begin(&mut self) -> Result<(), EnclosureError> {
         let (n, space) = (self.coordinates(), self.space);
         let layout = self.program.layout.clone();

@@ -49,9 +49,9 @@ pub struct Channel {
     pub output: usize,
     /// Kind of reduction.
     pub accumulation: Accumulation,
-    /// From when, s.
+    /// Begin, s.
     pub from: f64,
-    /// Until when, s; the end of the run, if that is earlier.
+    /// End, s; the end of the run, if that is earlier.
     pub to: f64,
 }
 
@@ -89,7 +89,7 @@ pub(in crate::simulate) struct Accumulator<'s> {
 }
 
 impl<'s> Accumulator<'s> {
-    /// For a tile of `width` lanes, with `outputs` outputs.
+    /// Accumulates a tile of `width` lanes, with `outputs` outputs.
     pub fn new(channels: &'s [Channel], outputs: usize, width: usize) -> Self {
         let states = vec![State::new(); channels.len() * width];
         let stopped = vec![false; width];
@@ -120,8 +120,8 @@ impl<'s> Accumulator<'s> {
         }
     }
 
-    /// After the last step: the values, channel by channel, lane by lane; NaN of lanes that stopped. A value at one
-    /// time only is constant.
+    /// The values after the last step, channel by channel, lane by lane; NaN of lanes that stopped. A value at one time
+    /// only is constant.
     pub fn finish(&mut self) -> Vec<f64> {
         if let ([time], [values]) = (&self.times[..], &self.values[..]) {
             let (time, values) = (time + 1.0, values.clone());

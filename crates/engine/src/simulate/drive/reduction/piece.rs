@@ -13,7 +13,7 @@ pub(super) type PiecePoint = (f64, f64);
 pub(super) struct Piece {
     /// Time of the first step, s.
     pub start: f64,
-    /// From the first step to the second, s.
+    /// Time from the first step to the second, s.
     pub length: f64,
     /// Values at both.
     pub ends: [f64; 2],
@@ -24,7 +24,7 @@ pub(super) struct Piece {
 }
 
 impl Piece {
-    /// Between points `first` and `first` + 1 of up to four (time, value), ascending in time.
+    /// The piece between points `first` and `first` + 1 of up to four (time, value), ascending in time.
     pub fn between(points: &[(f64, f64)], first: usize) -> Self {
         let [(start, a), (end, b)] = [points[first], points[first + 1]];
         let length = end - start;
@@ -71,7 +71,7 @@ impl Piece {
         places.into_iter().flatten().reduce(larger).unwrap_or((begin, f64::NAN))
     }
 
-    /// Where in a part the value is first not negative.
+    /// First share of a part at which the value is not negative.
     pub fn first_above(&self, part: &Range<f64>) -> Option<f64> {
         if self.at(part.start) >= 0.0 {
             return Some(part.start);
@@ -80,7 +80,7 @@ impl Piece {
         (height >= 0.0).then(|| self.crossing(part.start, top))
     }
 
-    /// Where in a part the value is last not negative.
+    /// Last share of a part at which the value is not negative.
     pub fn last_above(&self, part: &Range<f64>) -> Option<f64> {
         if self.at(part.end) >= 0.0 {
             return Some(part.end);
@@ -89,7 +89,7 @@ impl Piece {
         (height >= 0.0).then(|| self.crossing(part.end, top))
     }
 
-    /// Where the value becomes positive on the way from a share at which it is negative to one at which it is not.
+    /// Share at which the value becomes positive, from one at which it is negative to one at which it is not.
     fn crossing(&self, below: f64, above: f64) -> f64 {
         bisected(below, above, TUNING.bisections_of_crossing, |share| self.at(share) >= 0.0)
     }
@@ -132,7 +132,7 @@ fn value([a, b, c, d]: &[f64; 4], share: f64) -> f64 {
     a + share * (b + share * (c + share * d))
 }
 
-/// Where the derivative vanishes.
+/// Shares at which the derivative vanishes.
 fn stationary(&[_, b, c, d]: &[f64; 4]) -> [Option<f64>; 2] {
     // b + 2 c s + 3 d s², solved without cancellation.
     let root = c * c - 3.0 * b * d;

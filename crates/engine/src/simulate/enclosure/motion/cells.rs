@@ -14,7 +14,7 @@ pub(super) struct Passed {
     pub cell: Cell,
     pub approximation: Approximation,
     pub proven: Proven,
-    /// At the cell's start.
+    /// The frame at the cell's start.
     pub frame: Frame,
     /// Outputs over the cell.
     pub ranges: Vec<Interval>,
@@ -27,7 +27,7 @@ pub(super) struct Next {
     pub proven: Proven,
     /// The approximation at the cell's end.
     pub end: Approximation,
-    /// At the cell's end.
+    /// The frame at the cell's end.
     pub frame: Frame,
     /// Outputs over the cell.
     pub ranges: Vec<Interval>,

@@ -39,7 +39,7 @@ pub struct MotionSpaces {
 }
 
 impl MotionSpaces {
-    /// For `parameters` parameters.
+    /// Spaces for `parameters` parameters.
     pub fn new(parameters: usize, order: usize) -> Self {
         Self { fine: Space::new(parameters, order), coarse: Space::new(parameters, order.div_ceil(2)) }
     }
@@ -61,9 +61,9 @@ pub struct MotionEnclosure<'s> {
     fine: ModelMemory<'s>,
     coarse: ModelMemory<'s>,
     jets: JetMemory<'s>,
-    /// Over ξ, at rows.
+    /// Memory over ξ, at rows.
     rows: ModelMemory<'s>,
-    /// At the start of the next cell.
+    /// Approximation at the start of the next cell.
     start: Approximation,
     frame: Frame,
     /// Start of the next cell, s.
@@ -72,7 +72,7 @@ pub struct MotionEnclosure<'s> {
     /// Whether the last terms in τ of the accelerations over the cell that was tried last were large.
     is_stiff: bool,
     last: Option<Passed>,
-    /// Within which each output is since the time before the one that was observed last.
+    /// Range of each output since the time before the one that was observed last.
     since: Vec<Interval>,
     /// The proof so far.
     piece: Piece,
@@ -205,7 +205,7 @@ impl<'s> MotionEnclosure<'s> {
         self.piece
     }
 
-    /// Within which each output is at all times from the one observed before to the last one.
+    /// Range of each output over all times from the one observed before to the last one.
     pub fn since(&self) -> &[Interval] {
         &self.since
     }

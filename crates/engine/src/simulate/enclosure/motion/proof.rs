@@ -17,7 +17,7 @@ use crate::numerics::larger;
 /// Bounds over a cell for every ξ, for the distance e = y − ŷ of a motion y from the approximation ŷ, y = (q, v).
 #[derive(Clone, Debug)]
 pub(super) struct Proven {
-    /// How e grows.
+    /// Growth of e.
     pub flow: Flow,
     /// Bound of the part of |e'| due to the approximation's defect in the equations, 2n.
     pub defect: Vec<f64>,
@@ -32,7 +32,7 @@ pub(super) struct Claim<'c> {
     pub program: &'c EquationsProgram,
     /// Polynomials of the approximation.
     pub fine: &'c Space,
-    /// Those of the transition matrix.
+    /// Polynomials of the transition matrix.
     pub coarse: &'c Space,
     pub cell: Cell,
     pub approximation: &'c Approximation,
