@@ -27,7 +27,7 @@ pub enum SimulationError {
         of_velocities: bool,
         /// The sample.
         parameters: NamedValues,
-        /// Which constraints are too many, where some are.
+        /// Constraints that are too many, if there are any.
         cause: Option<Box<str>>,
     },
     /// A sample of kinematics has no start on the nominal one's branch of the linkage.
@@ -48,7 +48,7 @@ pub enum SimulationError {
     /// A program that stands for a mechanism cannot be started.
     #[error("{place}: black box: {why}")]
     BlackBox {
-        /// Where the model names it.
+        /// Location in the model.
         place: String,
         /// The system's reason.
         why: String,
@@ -56,7 +56,7 @@ pub enum SimulationError {
     /// A program that stands for a mechanism has no answer for a sample.
     #[error("{place}: the black box has no answer with {}: {why}", parameter_list(parameters))]
     NoAnswer {
-        /// Where the model names it.
+        /// Location in the model.
         place: String,
         /// Its fault, with its last words.
         why: String,
@@ -90,7 +90,7 @@ pub enum SimulationError {
     StartsOutside {
         /// Its name.
         effect: String,
-        /// How far, m.
+        /// Distance, m.
         distance: f64,
     },
     /// The equations of motion cannot be solved at the start.
@@ -140,7 +140,7 @@ pub enum SimulationError {
         /// The sample.
         parameters: NamedValues,
     },
-    /// It ended at an interruption.
+    /// The run ended at an interruption.
     #[error("interrupted")]
     Interrupted,
     /// Simulations were left to shards.
@@ -227,7 +227,7 @@ pub enum SimulationError {
     TooFast {
         /// The function and its owner.
         function: String,
-        /// About its period, or the time between its jumps, s.
+        /// Approximate period, or time between its jumps, s.
         period: f64,
         /// s
         step: f64,
@@ -279,7 +279,7 @@ fn names(coordinates: &[String]) -> String {
     coordinates.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(" and ")
 }
 
-/// Which coordinates motors leave free in a state.
+/// The error that motors leave coordinates free in a state, with their names.
 pub(super) fn not_driven(system: &System, start: &StartProgram, state: &[f64]) -> SimulationError {
     let rows = jacobian_rows(system, start, state);
     let mut matrix = DMatrix::zeros(rows.len(), system.q.len());
@@ -390,7 +390,7 @@ pub(super) fn assembly_error(system: &System, worst: &ConstraintResidual, parame
 }
 
 impl SimulationError {
-    /// With the reason why constraints of an assembly cannot hold, if it is known.
+    /// Adds the reason why constraints of an assembly cannot hold, if it is known.
     pub(super) fn because(mut self, why: Option<String>) -> Self {
         if let Self::Assembly { cause, of_velocities: false, .. } = &mut self {
             *cause = why.map(String::into_boxed_str);

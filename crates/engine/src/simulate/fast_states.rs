@@ -15,7 +15,7 @@ pub struct StateMode {
     pub value: Complex<f64>,
     /// x, by state.
     pub shape: Vec<Complex<f64>>,
-    /// How much of it the start excites.
+    /// Its amplitude due to the start.
     pub amplitude: f64,
 }
 

@@ -8,7 +8,7 @@ use std::fmt;
 pub struct Interruption<'a>(&'a (dyn Fn() -> bool + Sync));
 
 impl<'a> Interruption<'a> {
-    /// By this question.
+    /// An interruption by the question `asked`.
     pub fn new(asked: &'a (dyn Fn() -> bool + Sync)) -> Self {
         Self(asked)
     }
@@ -45,7 +45,7 @@ impl<'a> StepInterruption<'a> {
         self.steps = 0;
     }
 
-    /// Before a step: whether to end.
+    /// Whether to end before a step.
     pub fn ends(&mut self) -> bool {
         self.is_cut |= self.interruption.is_asked_in(self.steps);
         self.steps += 1;

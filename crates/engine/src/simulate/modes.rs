@@ -254,8 +254,8 @@ fn by_scheme(h: f64, frequency: f64, coefficients: Coefficients) -> [f64; 2] {
     [h, 0.5 * h].map(|h| decay_by_scheme(coefficients, h * frequency) / h)
 }
 
-/// By how much the logarithm of the amplitude of q̈ + q = 0 falls in a step of the scheme whose length is `step`: from
-/// the spectral radius of its matrix in (q, v, a), since w = −q.
+/// Decrease of the logarithm of the amplitude of q̈ + q = 0 in a step of the scheme whose length is `step`: from the
+/// spectral radius of its matrix in (q, v, a), since w = −q.
 fn decay_by_scheme(coefficients: Coefficients, step: f64) -> f64 {
     let Coefficients { beta, gamma, .. } = coefficients;
     let (of_new, of_old, of_algorithmic) =

@@ -70,7 +70,7 @@ pub(in crate::simulate) struct Sampling<'s> {
 }
 
 impl<'s> Sampling<'s> {
-    /// For the samples of an assembled tile; `None` where no state changes at instants.
+    /// Sampling of an assembled tile; `None` if no state changes at instants.
     pub fn new(simulator: &'s Simulator, start: &Tile) -> Option<Self> {
         if Instants::of(simulator).is_empty() {
             return None;
@@ -81,7 +81,7 @@ impl<'s> Sampling<'s> {
         Some(Self { simulator, assembly })
     }
 
-    /// At the end of a step; whether it is an instant.
+    /// Samples at the end of a step; returns whether it is an instant.
     pub fn end(&mut self, stepper: &mut Stepper, time: f64) -> bool {
         if !Instants::of(self.simulator).contain(time) {
             return false;

@@ -41,9 +41,9 @@ pub struct Assembled {
     pub undetermined: Vec<OutputId>,
     /// Coordinates that share the open part of the start: it is nearest to rest, one of many.
     pub shared: Vec<String>,
-    /// Where the start is an equilibrium.
+    /// Equilibrium, if the start is one.
     pub equilibrium: Option<Arc<Equilibrium>>,
-    /// Where small vibrations are asked for.
+    /// Small vibrations, if they are asked for.
     pub vibrations: Option<Arc<Vibrations>>,
     /// Outputs that follow from the results of the analysis, if any.
     pub derived: Option<Arc<Derived>>,
@@ -178,9 +178,9 @@ pub struct Simulator {
     pub undetermined: Vec<OutputId>,
     /// Coordinates that share the open part of the start: it is nearest to rest, one of many.
     pub shared: Vec<String>,
-    /// Where the start is an equilibrium.
+    /// Equilibrium, if the start is one.
     pub equilibrium: Option<Arc<Equilibrium>>,
-    /// Where small vibrations are asked for.
+    /// Small vibrations, if they are asked for.
     pub vibrations: Option<Arc<Vibrations>>,
     /// Outputs that follow from the results of the analysis, if any.
     pub derived: Option<Arc<Derived>>,
@@ -376,7 +376,7 @@ impl Simulator {
         compiled.as_ref().map_err(Clone::clone)
     }
 
-    /// Where the equations switch, if they do.
+    /// Switches of the equations, if they have any.
     pub fn switches(&self) -> Option<&SwitchProgram> {
         self.switches.get_or_init(|| compile_switches(&self.system)).as_ref()
     }

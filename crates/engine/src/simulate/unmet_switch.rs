@@ -21,7 +21,7 @@ use super::tuning::TUNING;
 use crate::compile::{SwitchProgram, Tapes};
 use crate::numerics::{Extent, Lattices, ParameterBox, SparseWork, Surrogate, SurrogateWork, extremes, spread};
 
-/// How far a switch went below and above zero since the row before.
+/// Distances by which a switch went below and above zero since the row before.
 type Depths = [f64; 2];
 
 /// A point where a switch may have a sign that no sample's has.
@@ -30,7 +30,7 @@ struct Suspect {
     row: usize,
     switch: usize,
     side: usize,
-    /// How far beyond zero.
+    /// Distance beyond zero.
     beyond: f64,
     xi: Vec<f64>,
 }
@@ -163,14 +163,14 @@ fn chosen(suspects: Vec<Suspect>, switches: usize) -> Vec<Vec<f64>> {
 
 /// Values seen in samples.
 struct Observations {
-    /// How far switches went before each row, of the first samples and of the others.
+    /// Depths of switches before each row, of the first samples and of the others.
     depths: Vec<[Vec<Depths>; 2]>,
     /// The first row before which one of them switched.
     switched_from: Option<usize>,
     counters: Counters,
 }
 
-/// How samples are simulated.
+/// Simulation of samples.
 struct Observing<'a> {
     simulator: &'a Simulator,
     program: &'a SwitchProgram,
@@ -234,8 +234,7 @@ impl Observing<'_> {
     }
 }
 
-/// How far least and largest values go, of which less than `zero` is nothing. (Nothing has been seen before the first
-/// step.)
+/// Depths of least and largest values; less than `zero` is nothing. Values are infinite before the first step.
 fn depths(low: &[f64], high: &[f64], zero: f64) -> Depths {
     let deepest = |values: &mut dyn Iterator<Item = f64>| {
         values.filter(|value| *value > zero && value.is_finite()).fold(0.0, f64::max)

@@ -24,7 +24,7 @@ pub(in crate::simulate) struct JetStepper<'s> {
     pub step_size: f64,
     /// Whether the step-size stage was run for it.
     is_prepared: bool,
-    /// Where time is a jet, when it begins and how long its unit is.
+    /// Beginning and unit of the time, if it is a jet.
     pace: Option<Pace>,
 }
 
@@ -134,7 +134,7 @@ impl<'s> JetStepper<'s> {
         Ok(())
     }
 
-    /// As for a tile: see [`Stepper::set_step_size`].
+    /// Same as for a tile: see [`Stepper::set_step_size`].
     fn set_step_size(&mut self, h: f64) {
         if self.step_size == h && self.is_prepared {
             return;

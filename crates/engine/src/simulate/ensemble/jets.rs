@@ -26,7 +26,7 @@ pub struct SchemeJet<'s> {
     start: JetMemory<'s>,
     /// Whether rows have accelerations of their own.
     recomputes: bool,
-    /// Where states of the centre change at instants.
+    /// Sampling of the centre, if its states change at instants.
     sampling: Option<Sampling<'s>>,
     /// Whether rows make their velocities consistent.
     projects: bool,
@@ -104,7 +104,7 @@ impl<'s> RowTile<'s> for SchemeJet<'s> {
         }
     }
 
-    /// Those of the centre.
+    /// Counters of the centre.
     fn counters(&self) -> Counters {
         self.stepper.center.counters()
     }

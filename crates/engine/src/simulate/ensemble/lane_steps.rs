@@ -30,7 +30,7 @@ pub(super) struct LaneSteps<'s> {
 }
 
 impl<'s> LaneSteps<'s> {
-    /// For the lanes of a stepper at the beginning of a run.
+    /// Steps of the lanes of a stepper at the beginning of a run.
     pub fn new(simulator: &'s Simulator, controller: Controller, stepper: &mut Stepper<'s>) -> Self {
         stepper.estimate_errors();
         let width = stepper.alive().len();

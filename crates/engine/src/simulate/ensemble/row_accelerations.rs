@@ -29,7 +29,7 @@ pub(super) struct RowAccelerations<'s> {
 }
 
 impl<'s> RowAccelerations<'s> {
-    /// For the samples of an assembled tile; `None` where outputs do not depend on the solution, or no constraint
+    /// Solver for the samples of an assembled tile; `None` if outputs do not depend on the solution, or no constraint
     /// disturbs it. `controlled` says whether steps follow a tolerance.
     pub fn new(simulator: &'s Simulator, start: &Tile, controlled: bool) -> Option<Self> {
         let projects_velocities = controlled && simulator.projects_row_velocities();

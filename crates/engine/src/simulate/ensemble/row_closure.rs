@@ -47,7 +47,7 @@ pub(in crate::simulate) struct RowClosure<'s> {
 }
 
 impl<'s> RowClosure<'s> {
-    /// For the samples of an assembled tile.
+    /// Closure of the samples of an assembled tile.
     ///
     /// # Errors
     /// Where the closure's equations have no factors.
@@ -190,7 +190,7 @@ pub(in crate::simulate) struct JetClosure<'s> {
 }
 
 impl<'s> JetClosure<'s> {
-    /// For a jet about `center`, whose state starts at that of an assembled tile of one lane.
+    /// Closure of a jet about `center`, whose state starts at that of an assembled tile of one lane.
     ///
     /// # Errors
     /// Where the closure's equations have no factors.

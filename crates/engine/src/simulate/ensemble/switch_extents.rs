@@ -4,7 +4,7 @@ use crate::compile::SwitchProgram;
 use crate::simulate::control::SwitchWatch;
 use crate::simulate::step::Stepper;
 
-/// Before anything was seen.
+/// Extent before the first step.
 const NOTHING: [f64; 2] = [f64::INFINITY, f64::NEG_INFINITY];
 
 /// The extents of a tile's switches since the last row.
@@ -17,19 +17,19 @@ pub(super) struct SwitchExtents<'s> {
 }
 
 impl<'s> SwitchExtents<'s> {
-    /// For the samples of a tile.
+    /// Extents of the samples of a tile.
     pub fn new(program: &'s SwitchProgram, stepper: &Stepper) -> Self {
         let width = stepper.alive().len();
         let extents = vec![NOTHING; program.switches.len() * width];
         Self { watch: SwitchWatch::new(program, stepper.tile()), extents, width }
     }
 
-    /// Before a step.
+    /// Evaluates the switches before a step.
     pub fn begin(&mut self, stepper: &Stepper) {
         self.watch.begin(stepper.tile());
     }
 
-    /// After a step of length h.
+    /// Extends the ranges after a step of length h.
     pub fn end(&mut self, stepper: &Stepper, h: f64) {
         self.watch.end(stepper.tile());
         let width = self.width;

@@ -25,14 +25,14 @@ pub struct SchemeTile<'s> {
     simulator: &'s Simulator,
     stepper: Stepper<'s>,
     observes_accelerations: bool,
-    /// Where constraints disturb those of the steps.
+    /// Solver for accelerations, if constraints disturb those of the steps.
     accelerations: Option<RowAccelerations<'s>>,
     /// First sample of the tile, and how many of its lanes are samples.
     first: usize,
     count: usize,
-    /// Where states change at instants.
+    /// Sampling, if states change at instants.
     sampling: Option<Sampling<'s>>,
-    /// With a tolerance: keeps all lanes within it.
+    /// Keeps all lanes within the tolerance, if there is one.
     lanes: Option<LaneSteps<'s>>,
     /// The first row before which a lane's local errors add up to more than the tolerance, or its steps pass over a
     /// feature.
@@ -42,7 +42,7 @@ pub struct SchemeTile<'s> {
     begun: bool,
     /// The first lane that stopped, and its state at the beginning of the failed step.
     stopped: Option<(usize, Vec<f64>)>,
-    /// Where outputs are reduced to one number.
+    /// Accumulator of outputs that are reduced to one number.
     reduction: Option<Accumulator<'s>>,
 }
 

@@ -27,23 +27,23 @@ pub(super) struct Watches<'s> {
     pub singular: Option<SingularWatch<'s>>,
     /// Search for constraints of the first lane that open.
     pub parting: Option<PartingWatch<'s>>,
-    /// Where switches are observed.
+    /// Ranges of switches, if they are observed.
     pub switches: Option<SwitchExtents<'s>>,
-    /// Where surfaces may overlap to some depth only.
+    /// Search for surfaces that overlap more deeply than they may.
     pub overlaps: Option<OverlapWatch<'s>>,
-    /// Without a tolerance: whether steps pass over features of forces in space.
+    /// Search for features of forces in space that steps pass over, without a tolerance.
     pub features: Option<FeatureWatch<'s>>,
 }
 
 impl<'s> Watches<'s> {
-    /// Before the first row.
+    /// Prepares the rows, before the first one.
     pub fn begin_rows(&mut self, simulator: &'s Simulator, stepper: &Stepper, observed: Observed, is_controlled: bool) {
         self.features = simulator.features().filter(|_| !is_controlled).map(FeatureWatch::new);
         let switches = simulator.switches().filter(|_| observed == Observed::Switches);
         self.switches = switches.map(|program| SwitchExtents::new(program, stepper));
     }
 
-    /// Before a step.
+    /// Prepares the watches for a step.
     pub fn begin(&mut self, stepper: &Stepper) {
         if let Some(switches) = &mut self.switches {
             switches.begin(stepper);
@@ -56,7 +56,7 @@ impl<'s> Watches<'s> {
         }
     }
 
-    /// After a step; whether it passes over a force, or surfaces overlap by more than they may.
+    /// Examines a step; returns whether it passes over a force, or surfaces overlap by more than they may.
     pub fn end(&mut self, stepper: &Stepper, StepTaken { h, end, count, is_divided }: StepTaken) -> bool {
         if let Some(singular) = &mut self.singular {
             singular.look(stepper, end);

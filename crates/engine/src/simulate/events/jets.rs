@@ -180,7 +180,7 @@ impl<'s> JetWatch<'s> {
         Self { program, memory, space }
     }
 
-    /// By how much a segment is to be longer, for its end to be this long behind the zero of a switch.
+    /// Change of a segment's length that moves its end this long behind the zero of a switch.
     fn change(&mut self, closure: &JetClosure, switch: usize, beyond: f64) -> Vec<f64> {
         let layout = &self.program.layout;
         for register in layout.state().chain([layout.time]) {

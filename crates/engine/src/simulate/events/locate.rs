@@ -19,8 +19,8 @@ impl Crossing {
     }
 }
 
-/// Where the cubic through (value, rate) at both ends of a step first changes its sign; the line where rates are
-/// unknown. A value of zero has the sign that follows.
+/// First change of sign of the cubic through (value, rate) at both ends of a step; of the line if rates are unknown. A
+/// value of zero has the sign that follows.
 pub fn crossing([start, start_rate]: [f64; 2], [end, end_rate]: [f64; 2], h: f64) -> Option<Crossing> {
     if !start.is_finite() || !end.is_finite() || start == 0.0 {
         return None;

@@ -62,7 +62,7 @@ pub struct Path<'s> {
 }
 
 impl<'s> Path<'s> {
-    /// At the start of a sample.
+    /// Path at the start of a sample.
     ///
     /// # Errors
     /// Where the sample cannot be assembled.

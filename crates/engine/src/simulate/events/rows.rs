@@ -21,7 +21,7 @@ pub(in crate::simulate) struct SegmentRows<'s> {
     at_row: Vec<f64>,
     /// The first row behind the first event that others do not meet.
     deviates: Option<usize>,
-    /// Where outputs are reduced to one number: of each lane, whose steps are its own.
+    /// Reductions of outputs to one number, by lane: each lane has steps of its own.
     reduced: Vec<Reduced<'s>>,
     /// Segments that are reduced.
     segments: usize,
@@ -37,7 +37,7 @@ struct Reduced<'s> {
 }
 
 impl<'s> SegmentRows<'s> {
-    /// At the start.
+    /// Rows at the start.
     pub(super) fn new(tile: SegmentTile<'s>, rows: RowClosure<'s>) -> Self {
         let (width, lines) = (tile.width(), tile.lines());
         Self {

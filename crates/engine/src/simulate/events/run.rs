@@ -25,7 +25,7 @@ pub struct SegmentRun<'s> {
     segments: &'s Segments,
     tiles: Vec<SegmentRows<'s>>,
     samples: Vec<Sample>,
-    /// By sample.
+    /// Indices of words, by sample.
     words: Vec<Option<usize>>,
     /// By sample, s.
     event_times: Vec<Vec<f64>>,

@@ -27,7 +27,7 @@ pub(in crate::simulate) struct EventSteps {
 }
 
 impl EventSteps {
-    /// Up to a time, s, of a motion of a duration, s, or as far as the sample can be followed.
+    /// Follows a sample up to a time, s, of a motion of a duration, s, or as far as it can be followed.
     ///
     /// # Errors
     /// Where it cannot be assembled.
@@ -64,12 +64,12 @@ pub(in crate::simulate) struct EventAdjoints<'s> {
     /// Accelerations on both sides.
     memory: StartAdjoints<'s>,
     events: Vec<(usize, Event)>,
-    /// How far before an event a state is moved, s: at first, and at most.
+    /// Least and largest time by which a state is moved to before an event, s.
     back: [f64; 2],
 }
 
 impl<'s> EventAdjoints<'s> {
-    /// Through events at the ends of steps of an assembled tile, whose motion has a duration, s.
+    /// Adjoints through events at the ends of steps of an assembled tile, whose motion has a duration, s.
     ///
     /// # Errors
     /// Where the closure's equations have no factors.
@@ -87,7 +87,7 @@ impl<'s> EventAdjoints<'s> {
         Ok(Some(Self { program, tile, adjoints, memory, events, back }))
     }
 
-    /// From adjoints of a state (q, v) behind the event at a step's end to those before it, if there is an event.
+    /// Pulls adjoints of a state (q, v) behind the event at a step's end to before it, if there is an event.
     pub fn pull(&mut self, step: usize, end: f64, state: &[f64], adjoints: &mut [f64]) {
         let Some(event) = self.event(step) else { return };
         let behind = self.accelerations(end, state);

@@ -28,7 +28,7 @@ pub(super) struct SchemeSteps<S> {
     weights: Vec<f64>,
     coarser: Vec<f64>,
     time: f64,
-    /// At the end of the step that was tried last.
+    /// State at the end of the step that was tried last.
     next: Vec<f64>,
     /// States that the levels have in common in that step, from its beginning.
     points: Vec<Vec<f64>>,

@@ -61,15 +61,15 @@ pub enum WordsEnd {
     MoreEvents,
 }
 
-/// How motions between events are integrated.
+/// Method for motions between events.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum SegmentMethod {
-    /// By the explicit method.
+    /// The explicit method.
     #[default]
     Explicit,
     /// The same, where steps may also err by rounding: near rest the whole motion is of its size.
     ExplicitFromRest,
-    /// By the scheme, where forces are stiff or the model asks for it.
+    /// The scheme, where forces are stiff or the model asks for it.
     Scheme {
         /// Levels of extrapolation; 1 is the scheme itself.
         levels: usize,
@@ -86,12 +86,12 @@ impl SegmentMethod {
     }
 }
 
-/// How a sample is followed from event to event.
+/// Accuracy and method by which a sample is followed from event to event.
 #[derive(Clone, Copy, Debug)]
 pub struct Following {
     /// Largest error of a step, as a share of how far the motion has gone.
     pub tolerance: f64,
-    /// How it is integrated.
+    /// Method of integration.
     pub method: SegmentMethod,
     /// With the scheme: allowed error of its steps up to the end, as a share of how far the motion has gone.
     pub of_steps: Option<f64>,
@@ -107,16 +107,16 @@ pub struct Segments {
     pub horizon: f64,
     /// Why they end before the rows do.
     pub end: Option<WordsEnd>,
-    /// How closely events are located: a motion that is followed alone errs by this share of how far it has gone, in
-    /// each of its steps.
+    /// Accuracy of events: a motion that is followed alone errs by this share of how far it has gone, in each of its
+    /// steps.
     pub tolerance: f64,
-    /// How motions are integrated.
+    /// Method of integration.
     #[serde(default)]
     pub method: SegmentMethod,
 }
 
 impl Segments {
-    /// How their samples are followed, whatever the steps that they share.
+    /// Accuracy and method by which their samples are followed, whatever the steps that they share.
     pub fn following(&self) -> Following {
         Following { tolerance: self.tolerance, method: self.method, of_steps: None }
     }

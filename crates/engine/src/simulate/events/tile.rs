@@ -47,7 +47,7 @@ struct Alone<'s> {
 /// Samples on their way.
 #[derive(Debug)]
 pub(super) struct SegmentTile<'s> {
-    /// None of samples that meet the events of no word.
+    /// Word of the samples; `None` for samples that meet the events of no word.
     pub word: Option<&'s Word>,
     /// Time up to which words are followed, s.
     horizon: f64,
@@ -55,7 +55,7 @@ pub(super) struct SegmentTile<'s> {
     motion: Stretched<'s>,
     run: Box<dyn MotionSteps<Stretched<'s>> + 's>,
     watch: SwitchWatch<'s>,
-    /// At the beginning of the next segment.
+    /// State at the beginning of the next segment.
     state: Vec<f64>,
     next: usize,
     /// Lengths of all segments of each lane as the lane alone finds them, s.
@@ -82,7 +82,7 @@ pub(super) struct Lanes<'s> {
 }
 
 impl<'s> SegmentTile<'s> {
-    /// At the start.
+    /// Tile at the start.
     ///
     /// # Errors
     /// Where a sample cannot be assembled.

@@ -26,9 +26,9 @@ tuning! {
         /// A crossing behind this share of a step, or so little beyond its end, is solved for by Newton's method;
         /// before it, the step is cut short first.
         near_end: f64 = 0.98, moves "the steps of motions with events";
-        /// How far beyond an event a step ends, as a share of the duration.
+        /// Distance of a step's end beyond an event, as a share of the duration.
         beyond_event: f64 = 16.0 * f64::EPSILON, moves "the steps of motions with events";
-        /// How closely the end of a step beyond an event is solved for, as a share of the duration.
+        /// Accuracy of the end of a step beyond an event, as a share of the duration.
         located: f64 = 4.0 * f64::EPSILON, moves "the steps of motions with events";
         /// Largest uncertainty of an event's instant by rounding of the switch, as a share of the duration.
         rounded_instant: f64 = 1e-9, moves "the steps of motions with events";

@@ -103,8 +103,8 @@ pub fn segments_of(
     Ok(Some(Segments { words: words.collect(), boundaries, horizon, end, tolerance, method }))
 }
 
-/// How motions are followed that the explicit method cannot follow: it errs by rounding near rest, and the scheme takes
-/// long steps where forces are stiff. None if some samples, followed roughly, meet no event, and if constraints drive a
+/// Ways to follow motions that the explicit method cannot follow: it errs by rounding near rest, and the scheme takes
+/// long steps where forces are stiff. Empty if some samples, followed roughly, meet no event, or if constraints drive a
 /// mechanism, at the same instants for all.
 fn methods_for_failed(
     simulator: &Simulator,

@@ -45,7 +45,7 @@ pub(in crate::simulate) struct ExplicitAdjoints<'s> {
 }
 
 impl<'s> ExplicitAdjoints<'s> {
-    /// Over the path of an assembled tile.
+    /// Adjoints over the path of an assembled tile.
     ///
     /// # Errors
     /// Where the closure's equations have no factors.
@@ -75,14 +75,14 @@ impl<'s> ExplicitAdjoints<'s> {
         })
     }
 
-    /// Through events at the ends of steps.
+    /// Adds events at the ends of steps.
     #[must_use]
     pub fn through(self, events: Option<EventAdjoints<'s>>) -> Self {
         Self { events, ..self }
     }
 
-    /// From the rows, the last first, to the start; the outputs' values are noted in `values` (by lane and term).
-    /// Returns adjoints of the start's positions and velocities (2n lines).
+    /// Pulls adjoints from the rows, the last first, to the start; the outputs' values are noted in `values` (by lane
+    /// and term). Returns adjoints of the start's positions and velocities (2n lines).
     pub fn pull(&mut self, rows: &[ExplicitRow], closing: &mut RowAdjoints, values: &mut [Vec<f64>]) -> Vec<f64> {
         let mut adjoints = vec![0.0; self.path.start().len()];
         let mut rows = rows.iter().peekable();
@@ -280,7 +280,7 @@ impl<'s> ExplicitAdjoints<'s> {
         self.closures.values(layout.q.start..layout.v.end).to_vec()
     }
 
-    /// Through the closure of a state.
+    /// Pulls adjoints through the closure of a state.
     fn pull_closure(&mut self, time: f64, state: &[f64], adjoints: &mut [f64]) {
         if !self.closes {
             return;
@@ -293,7 +293,7 @@ impl<'s> ExplicitAdjoints<'s> {
         adjoints.copy_from_slice(&self.closures.take(layout.q.start..layout.v.end));
     }
 
-    /// Through the change of states at an instant, given the state before.
+    /// Pulls adjoints through the change of states at an instant, given the state before.
     fn pull_sampling(&mut self, time: f64, unchanged: &[f64], adjoints: &mut [f64]) {
         let layout = self.closures.layout();
         self.closures.set(time, layout.q.start, unchanged);

@@ -23,7 +23,7 @@ pub(in crate::simulate) struct ExplicitSteps<'s> {
 }
 
 impl<'s> ExplicitSteps<'s> {
-    /// From an assembled tile.
+    /// Steps from an assembled tile.
     ///
     /// # Errors
     /// Where the closure's equations have no factors.

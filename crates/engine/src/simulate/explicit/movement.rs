@@ -15,7 +15,7 @@ pub(in crate::simulate) struct Movement {
 }
 
 impl Movement {
-    /// Before the start of a motion of this duration, s.
+    /// Movement before the start of a motion of this duration, s.
     pub fn new(coordinates: &[CoordinateInfo], duration: f64) -> Self {
         let kind = |coordinate: &CoordinateInfo| usize::from(coordinate.is_angle);
         let positions = coordinates.iter().map(|coordinate| (!coordinate.is_state).then(|| kind(coordinate)));

@@ -13,10 +13,10 @@ const TERMS: usize = 3 + DENSE.len();
 /// The state between steps, and the stages of the step that was tried last.
 #[derive(Clone, Debug)]
 pub(in crate::simulate) struct RungeKutta {
-    /// At the step's beginning.
+    /// Time and state at the step's beginning.
     pub time: f64,
     pub state: Vec<f64>,
-    /// At the step's end, once one was tried.
+    /// State at the step's end, once one was tried.
     pub next: Vec<f64>,
     /// The state of the last stage, whose time is the step's end too.
     last: Vec<f64>,
@@ -49,14 +49,14 @@ pub(in crate::simulate) fn adapted_length(step: f64, ratio: f64, order: usize, l
     }
 }
 
-/// Where the stages of a step end whose end is at an event, a little before it: forces may jump there, and stages as
-/// late as the step's end are on either side of it by chance.
+/// End of the stages of a step that ends at an event, a little before it: forces may jump there, and stages as late as
+/// the step's end are on either side of it by chance.
 pub(in crate::simulate) fn before_event(begin: f64, end: f64) -> f64 {
     end - TUNING.before_event * (end - begin)
 }
 
 impl RungeKutta {
-    /// From a state.
+    /// Starts from a state.
     pub fn start(motion: &mut impl Motion, time: f64, state: Vec<f64>) -> Self {
         let size = state.len();
         let mut rates = vec![vec![0.0; size]; WITH_DENSE];
@@ -243,7 +243,7 @@ impl<M: Motion> MotionSteps<M> for RungeKutta {
     }
 }
 
-/// Where a combination goes.
+/// Target of a combination.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Place {
     Next,

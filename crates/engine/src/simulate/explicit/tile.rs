@@ -47,7 +47,7 @@ pub(in crate::simulate) struct ExplicitTile<'s, M> {
     at_row: Vec<f64>,
     /// Registers of the first lane at the start.
     registers: Vec<f64>,
-    /// Where outputs are reduced to one number.
+    /// Accumulator of outputs that are reduced to one number.
     reduction: Option<Accumulator<'s>>,
     /// Search for constraints that the first lane leaves open.
     parting: Option<PartingWatch<'s>>,
@@ -104,7 +104,7 @@ impl<'s> ExplicitJets<'s> {
 }
 
 impl<'s, M: RowState> ExplicitTile<'s, M> {
-    /// In a state at the start, whose first lane has these registers.
+    /// A tile in a state at the start, whose first lane has these registers.
     fn new(mut motion: M, rows: Option<M>, state: Vec<f64>, registers: Vec<f64>) -> Self {
         let run = RungeKutta::start(&mut motion, 0.0, state.clone());
         let width = motion.width();

@@ -56,7 +56,7 @@ pub(super) struct Passage<'p> {
 #[derive(Clone, Debug, Default)]
 pub(super) struct FeatureWork {
     path: StepCubics,
-    /// Over the whole step, at its beginning, at its end, and over a part.
+    /// Intervals over the whole step, at its beginning, at its end, and over a part.
     symbols: [Vec<Interval>; 4],
     values: Vec<Interval>,
     /// Indices of functions that change by much over the whole step.
@@ -216,12 +216,12 @@ impl<'s> FeatureWatch<'s> {
         Self { features, before, after, parameters, work: FeatureWork::default() }
     }
 
-    /// Before a step.
+    /// Stores the state before a step.
     pub fn begin(&mut self, stepper: &Stepper) {
         copy(&self.features.layout, stepper, &mut self.before);
     }
 
-    /// After a step.
+    /// Stores the state after a step.
     pub fn end(&mut self, stepper: &Stepper) {
         copy(&self.features.layout, stepper, &mut self.after);
     }

@@ -11,9 +11,9 @@ use crate::compile::Layout;
 pub struct Gradients {
     graph: Graph,
     layout: Layout,
-    /// By which symbol each register of the layout stands in the expressions.
+    /// Symbols in the expressions, with their registers in the layout.
     symbols: Vec<(Expr, usize)>,
-    /// For q, v, w and λ: (output, column, value).
+    /// (output, column, value) by q, v, w and λ.
     entries: [Vec<(usize, usize, Expr)>; 4],
 }
 

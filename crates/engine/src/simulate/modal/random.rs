@@ -24,7 +24,7 @@ use crate::numerics::{Spectrum, integrals};
 #[derive(Clone, Debug)]
 pub struct RandomLoads {
     graph: Graph,
-    /// By which symbol each register of the layout stands in the expressions.
+    /// Symbols in the expressions, with their registers in the layout.
     symbols: Vec<(Expr, usize)>,
     inputs: Vec<RandomInput>,
     /// Derivatives by each symbol of an input: of rows of the equations of motion, and of outputs.

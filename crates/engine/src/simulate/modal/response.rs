@@ -10,14 +10,14 @@ use crate::simulate::statics::{Linearised, reduced, times};
 /// Real and imaginary parts of forces, or of coordinates, n each.
 #[derive(Clone, Debug)]
 pub struct Load {
-    /// In phase.
+    /// Part in phase.
     pub re: Vec<f64>,
     /// A quarter of a period ahead.
     pub im: Vec<f64>,
 }
 
 impl Load {
-    /// None.
+    /// No load.
     pub fn nothing(n: usize) -> Self {
         Self { re: vec![0.0; n], im: vec![0.0; n] }
     }
@@ -32,7 +32,7 @@ pub struct Response<'l> {
 }
 
 impl<'l> Response<'l> {
-    /// About a configuration.
+    /// Response about a configuration.
     pub fn new(linear: &'l Linearised) -> Self {
         let space = RowSpace::of(&linear.jacobian, linear.motion.len());
         let small = [&linear.mass, &linear.damping, &linear.stiffness].map(|matrix| reduced(matrix, &space.null));

@@ -28,7 +28,7 @@ pub struct Root {
     pub of: Vec<Eigenvalue>,
 }
 
-/// How outputs change with a mode.
+/// Changes of outputs with a mode.
 pub struct OutputChanges<'l> {
     linear: &'l Linearised,
     /// Row space of Φ_q.
@@ -61,7 +61,8 @@ impl Root {
         Self { kind, of: vec![eigenvalue] }
     }
 
-    /// In the order of the quantities. NaN: the time constant of a constant, and the damping without a vibration.
+    /// Results in the order of the quantities. NaN: the time constant of a constant, and the damping without a
+    /// vibration.
     pub fn told(&self) -> Vec<f64> {
         let growth = self.growth();
         match (self.kind, self.of.as_slice()) {
@@ -96,7 +97,7 @@ impl Root {
         self.of.iter().reduce(|a, b| if b.value.re > a.value.re { b } else { a })
     }
 
-    /// How many eigenvalues it has in common with another configuration's.
+    /// Number of eigenvalues that it has in common with another configuration's.
     fn shared(&self, found: &Eigenvalue) -> f64 {
         if self.kind == ModeKind::Lag && found.value == Complex::new(0.0, 0.0) && self.growth() == 0.0 {
             return 1.0;
@@ -107,7 +108,7 @@ impl Root {
 }
 
 impl<'l> OutputChanges<'l> {
-    /// About a configuration.
+    /// Changes about a configuration.
     pub fn of(linear: &'l Linearised, gradients: &'l [Vec<Vec<f64>>; 4]) -> Self {
         Self { linear, space: RowSpace::of(&linear.jacobian, linear.motion.len()), gradients }
     }

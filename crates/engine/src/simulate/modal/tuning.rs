@@ -9,7 +9,7 @@ tuning! {
         no_damping: f64 = 1e-13, moves "modes, within rounding";
         /// Eigenvalues below this share of the largest frequency are zero.
         still_of_second_order: f64 = 1e-7, moves "modes, within rounding";
-        /// How far inverse iteration is from the eigenvalue, so that its matrix has an inverse.
+        /// Distance of inverse iteration from the eigenvalue, so that its matrix has an inverse.
         beside_eigenvalue: f64 = 1e-9, moves "modes, within rounding";
         /// Share of M's trace that motions without mass get.
         least_mass: f64 = 1e-12, moves "modes, and the stability of equilibria, within rounding";

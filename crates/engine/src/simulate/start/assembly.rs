@@ -35,7 +35,7 @@ pub struct Assembly<'p> {
 }
 
 impl<'p> Assembly<'p> {
-    /// For tiles of this width at t = 0. `parameters` holds k values a lane, parameter by parameter.
+    /// Assembly of tiles of this width at t = 0. `parameters` holds k values a lane, parameter by parameter.
     pub fn new(
         program: &'p StartProgram,
         system: &System,
@@ -73,7 +73,7 @@ impl<'p> Assembly<'p> {
         self.correct_until_settled(self.program.position(), self.program.layout.q.start);
     }
 
-    /// Which lanes have a coordinate far from that of a state.
+    /// Lanes that have a coordinate far from that of a state.
     pub fn far_from(&self, state: &[f64]) -> Vec<bool> {
         let is_far = |lane: usize| {
             let places = self.program.layout.q.clone().zip(&self.scale);
@@ -184,7 +184,7 @@ impl<'p> Assembly<'p> {
         self.correct_until_settled(program.velocity(), program.layout.v.start);
         self.tile.run(program.velocity());
         open.extend(self.open_lanes(&program.constraint_rate, true));
-        // Where positions are inconsistent, velocities mean nothing.
+        // If positions are inconsistent, velocities mean nothing.
         open.sort_by_key(|residual| (residual.lane, residual.of_velocities));
         open.dedup_by_key(|residual| residual.lane);
         for register in program.layout.w.start..program.layout.lambda.end {

@@ -53,9 +53,9 @@ fn rows_with_shared_columns(rows: &[Vec<(usize, f64)>], usual: &[f64]) -> Vec<us
     (0..rows.len()).filter(|&row| is_left[row]).collect()
 }
 
-/// How independent each row of a sparse matrix is of the rows before it: the largest entry that elimination in the
-/// rows' order leaves of the row, relative to the row's own size or its usual one, whichever is larger. The pivot of a
-/// row is its largest remaining entry; rows within the tolerance give no pivot.
+/// Independence of each row of a sparse matrix of the rows before it: the largest entry that elimination in the rows'
+/// order leaves of the row, relative to the row's own size or its usual one, whichever is larger. The pivot of a row is
+/// its largest remaining entry; rows within the tolerance give no pivot.
 pub fn row_independence(rows: &[impl AsRef<[(usize, f64)]>], usual: &[f64], tolerance: f64) -> Vec<f64> {
     let mut reduced: BTreeMap<usize, Vec<(usize, f64)>> = BTreeMap::new(); // by pivot column
     let mut independence = Vec::with_capacity(rows.len());

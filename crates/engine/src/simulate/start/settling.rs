@@ -18,7 +18,7 @@ impl Settling {
         Self { pending: vec![true; width], size: vec![0.0; width], last: vec![f64::NAN; width] }
     }
 
-    /// Before the first correction.
+    /// Prepares for the first correction.
     pub fn begin(&mut self) {
         self.pending.fill(true);
         self.last.fill(f64::NAN);

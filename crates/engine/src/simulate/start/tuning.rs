@@ -19,9 +19,9 @@ tuning! {
         /// A sample whose coordinates lie further than this from the nominal ones, in their scales, may be on another
         /// branch: it is reached by small changes.
         far_sample: f64 = 0.25, moves "which samples are assembled, and which equilibria are found";
-        /// How far pivot samples are moved from the nominal start, in coordinate scales.
+        /// Distance of pivot samples from the nominal start, in coordinate scales.
         pivot_sample_spread: f64 = 0.7, moves "the choice of pivots";
-        /// How far a configuration in general position is from the start, in coordinate scales.
+        /// Distance of a configuration in general position from the start, in coordinate scales.
         apart_from_start: f64 = 0.05, moves "which constraints count as redundant";
         /// Corrections that bring a moved configuration back onto the constraints.
         corrections_of_position: usize = 30, moves "which constraints count as redundant";

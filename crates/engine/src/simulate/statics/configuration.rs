@@ -41,7 +41,7 @@ pub struct Linearised {
 }
 
 impl<'p> StaticConfiguration<'p> {
-    /// At rest at the origin, with these parameters.
+    /// The configuration at rest at the origin, with these parameters.
     pub fn new(
         program: &'p EquationsProgram,
         scale: &'p [f64],

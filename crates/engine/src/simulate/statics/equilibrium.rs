@@ -43,7 +43,7 @@ pub(super) struct RestState {
 pub struct NoEquilibrium {
     /// The coordinate that is pushed most.
     pub coordinate: CoordinateId,
-    /// By this much, in N or N m.
+    /// The force on it, N or N m.
     pub force: f64,
     /// Whether nothing holds it, wherever it is.
     pub is_free: bool,

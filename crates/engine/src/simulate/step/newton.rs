@@ -58,7 +58,7 @@ pub struct Newton {
 }
 
 impl Newton {
-    /// For tiles of this width.
+    /// Iteration of tiles of this width.
     pub fn new(width: usize) -> Self {
         Self {
             pending: vec![false; width],
@@ -89,7 +89,7 @@ impl Newton {
         self.lengths = Some(lengths.to_vec());
     }
 
-    /// By how much a lane's step is longer than the h that all lanes share, to a power.
+    /// Ratio of a lane's step to the h that all lanes share, to a power.
     fn stretch(&self, lane: usize, power: i32) -> f64 {
         self.lengths.as_ref().map_or(1.0, |lengths| lengths[lane].powi(power))
     }

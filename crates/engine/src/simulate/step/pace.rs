@@ -4,7 +4,7 @@
 /// all lanes have the shares in common.
 #[derive(Clone, Debug, PartialEq)]
 pub(in crate::simulate) struct Pace {
-    /// By lane, s.
+    /// Begin and length by lane, s.
     pub begin: Vec<f64>,
     pub length: Vec<f64>,
 }

@@ -30,7 +30,7 @@ pub struct Stepper<'p> {
     step_size: f64,
     /// Step size that the tile's step-size stage was run for.
     prepared_size: f64,
-    /// Where lanes have times of their own.
+    /// Times of lanes, if they have their own.
     pace: Option<Pace>,
     /// Whether a lane still runs.
     alive: Vec<bool>,

@@ -167,12 +167,12 @@ impl Simulator {
     }
 }
 
-/// How a walk ended.
+/// Result of a walk.
 #[derive(Debug, Default)]
 pub(super) struct Way {
-    /// Where it stopped, if it did.
+    /// The stop, if there was one.
     pub stop: Option<Stop>,
-    /// Where branches met within rounding.
+    /// Configurations where branches met within rounding.
     pub singular: Vec<SingularPass>,
 }
 
@@ -186,7 +186,7 @@ struct Branch {
 }
 
 impl Branch {
-    /// That of the nominal start.
+    /// Branch of the nominal start.
     fn new(simulator: &Simulator) -> Self {
         let orientation = Orientation::new(&simulator.system, &simulator.mobility.redundant);
         let mut branch = Self { orientation, is_negative: None, before: Vec::new() };
@@ -209,7 +209,7 @@ impl Branch {
     }
 }
 
-/// How a correction ended.
+/// Result of a correction.
 enum Advance {
     /// Too far away, or nowhere.
     Far,

@@ -31,7 +31,7 @@ use crate::numerics::Sample;
 pub struct Visit {
     /// The outputs, row by row, as far as it came.
     pub values: Vec<f64>,
-    /// Where it stopped, if it did; it is no sample's number yet.
+    /// The stop, if there was one; it is no sample's number yet.
     pub stop: Option<Stop>,
     /// Singular configurations on the way that were passed smoothly.
     pub singular: Vec<SingularPass>,

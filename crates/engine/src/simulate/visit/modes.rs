@@ -56,7 +56,7 @@ impl Simulator {
         Ok(visit)
     }
 
-    /// Those of the nominal sample, each row's in the order of the row before.
+    /// Modes of the nominal sample, each row's in the order of the row before.
     fn nominal_places(
         &self,
         vibrations: &Vibrations,
