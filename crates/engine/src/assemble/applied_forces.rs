@@ -116,7 +116,7 @@ impl<'g> AppliedForces<'g> {
         conditions
     }
 
-    /// All that acts, each under its condition.
+    /// All forces, each under its condition.
     pub fn with_guarded(&self) -> Self {
         let mut all = Self { guarded: Vec::new(), guard: None, ..self.clone() };
         for &Guarded { guard: Guard { within, condition }, target, part } in &self.guarded {

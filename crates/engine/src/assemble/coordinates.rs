@@ -53,7 +53,7 @@ pub fn called_for(questions: &Questions) -> BTreeSet<(usize, JointCoordinate)> {
     found
 }
 
-/// Formulas that may speak of the motion.
+/// Formulas that may depend on the motion.
 fn formulas<'q>(questions: &'q Questions) -> Vec<&'q Formula> {
     let outputs = questions.outputs.iter().map(|output| &output.formula);
     formulas_of_motion(questions.description).into_iter().chain(outputs).collect()

@@ -16,7 +16,7 @@ impl Mechanism<'_, '_> {
     /// distances, prescribed and initial positions; 1 where it names none.
     pub fn characteristic_length(&self, description: &Description) -> Result<f64, BuildError> {
         let mut lengths: Vec<Scalar> = Vec::new();
-        // Euler parameters of zero turn nothing, so that children say nothing then.
+        // Euler parameters of zero rotate nothing, so that children give no lengths then.
         let is_placed = self.unnamed_coordinates().next().is_none();
         for body in &self.bodies {
             lengths.extend(body.center.components());
@@ -69,8 +69,8 @@ fn length_at_start(value: &StartValue) -> Option<&Formula> {
     }
 }
 
-/// Points that a joint, an effect or a formula refers to: body and point. What nothing refers to says nothing of the
-/// model's size.
+/// Points that a joint, an effect or a formula refers to: body and point. Other points do not count for the model's
+/// size.
 fn used_points(questions: &Questions) -> BTreeSet<(usize, usize)> {
     let description = questions.description;
     let mut used = BTreeSet::new();

@@ -1,4 +1,4 @@
-//! Places in a [`System`]'s lists, as other stages name them: a constraint's cannot be taken for that of a coordinate,
+//! Indices in a [`System`]'s lists, as other stages name them: a constraint's cannot be taken for that of a coordinate,
 //! of an output or of a condition of the start, nor for a row in which constraints follow coordinates.
 
 use std::ops::Index;

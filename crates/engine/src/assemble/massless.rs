@@ -21,7 +21,7 @@ use super::system::{ConstraintInfo, ResidualUnit, Start};
 use crate::multibody::BuildError;
 
 impl<'g> Constraints<'g> {
-    /// Adds a constraint for each coordinate without inertia that stands in no other: that its force is zero.
+    /// Adds a constraint for each coordinate without inertia that is in no other constraint: its force is zero.
     /// `is_massive` says which have inertia, `force` is Q.
     ///
     /// # Errors

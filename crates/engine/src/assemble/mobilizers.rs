@@ -24,10 +24,10 @@ use crate::multibody::{
     AxisMotion, BuildError, Context, DegreeOfFreedom, Matrix, Quaternion, RelativeMotion, Vector, rotation,
 };
 
-/// Places in q, axes in F₁ and in F₂, of rotations of F₂ against F₁.
+/// Indices in q, and axes in F₁ and in F₂, of rotations of F₂ against F₁.
 type Rotations<'g> = Vec<(usize, [Vector<'g>; 2])>;
 
-/// Place in q and direction, in the axes of the parent's frame, of translations.
+/// Indices in q, and directions in the axes of the parent's frame, of translations.
 type Translations<'g> = Vec<(usize, Vector<'g>)>;
 
 /// Relative motion of a joint's frames.

@@ -24,7 +24,7 @@ use crate::multibody::{self, BuildError, Context};
 
 /// x, y, θ.
 const DEGREES_OF_FREEDOM: usize = 3;
-/// Place of θ.
+/// Index of θ.
 const ANGLE: usize = 2;
 
 /// A joint as seen from one of its bodies.

@@ -46,7 +46,7 @@ impl<'g> Motion<'g> {
         Self { omega, alpha, acceleration, spread: spread(omega, alpha) }
     }
 
-    /// A root moves as its own coordinates say, in a field of acceleration.
+    /// The motion of a root by its own coordinates, in a field of acceleration.
     fn of_root(body: &Body<'g>, field: Vector<'g>) -> Self {
         let felt = body.acceleration_of_origin() - field;
         let acceleration = body.matrix().transposed() * felt;

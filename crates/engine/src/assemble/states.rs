@@ -25,7 +25,7 @@ impl<'g> Mechanism<'g, '_> {
         }
     }
 
-    /// Their values at the start, and zero for the coordinates themselves.
+    /// Values of the states at the start, and zero for the coordinates themselves.
     pub fn states_at_start(
         &self,
         description: &Description,

@@ -144,7 +144,7 @@ pub struct ChildLink {
     pub parent: Option<usize>,
     /// The coordinates of its inboard joint.
     pub coordinates: Vec<usize>,
-    /// Place in the constraints of the one on these coordinates alone: the normalisation of Euler parameters.
+    /// Index of the constraint on these coordinates alone: the normalisation of Euler parameters.
     pub normalisation: Option<usize>,
     /// Its motion, and the forces applied to it and to all its children.
     pub values: Vec<Expr>,

@@ -1,4 +1,4 @@
-//! Which bodies are children, and of which.
+//! Trees of bodies: children and their parents.
 //!
 //! In joint coordinates a child has none of its own: its position follows from that of its parent and from the
 //! coordinates of its inboard joint, the one between them. The inboard joints form trees, whose roots are the ground

@@ -76,16 +76,16 @@ fn functions_of(system: &System, graph: &Graph, roots: &[Expr]) -> FxHashMap<Exp
     found
 }
 
-/// For each expression the first one that all ways from it to the roots lead through.
+/// The first expression that all paths from an expression to the roots lead through, for each expression.
 struct Gates {
-    /// That, and how many follow; none where the ways part for good.
+    /// That expression, and the number of those that follow; none if the paths have none in common.
     next: FxHashMap<Expr, (Option<Expr>, usize)>,
 }
 
 impl Gates {
     fn new(graph: &Graph, roots: &[Expr]) -> Self {
         let mut gates = Self { next: FxHashMap::default() };
-        // Where ways from an expression lead to, as far as its users are known.
+        // Next common expression of the paths from an expression, as far as its users are known.
         let mut ways: FxHashMap<Expr, Option<Expr>> = roots.iter().map(|&root| (root, None)).collect();
         for expr in graph.reachable(roots).into_iter().rev() {
             // Every reachable expression is a root, or has a user that came before.

@@ -24,11 +24,11 @@ use crate::compile::tuning::TUNING;
 /// Whether the equations are eliminated link by link.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum LinkElimination {
-    /// They are not.
+    /// The whole equations are eliminated.
     Whole,
-    /// If that is shorter.
+    /// Link by link, if that is shorter.
     Shorter,
-    /// They are.
+    /// Link by link.
     Links,
 }
 

@@ -28,9 +28,9 @@ pub struct Switch {
     pub value: usize,
     /// Register of its rate, where that does not depend on rates of accelerations or reactions.
     pub rate: Option<usize>,
-    /// Places of switches of whole numbers at which the value jumps itself.
-    pub jumps_with: Vec<usize>,
     /// Indices of the switches at whole numbers at which the value itself jumps.
+    pub jumps_with: Vec<usize>,
+    /// The term of the system's equations that jumps or has a kink there; of a condition, the condition.
     pub of: Expr,
     /// Whether its value depends on velocities.
     pub of_velocity: bool,

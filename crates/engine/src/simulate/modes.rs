@@ -73,7 +73,7 @@ struct Linearised {
     acceleration: DVector<f64>,
     /// Derivatives of the outputs by q, v, w and λ.
     outputs: [DMatrix<f64>; 4],
-    /// Places of the coordinates whose velocities are states.
+    /// Indices of the coordinates whose velocities are states.
     states: Vec<usize>,
 }
 

@@ -251,7 +251,7 @@ struct Between<'a> {
 }
 
 impl Between<'_> {
-    /// Places where switches, each with a side of zero, may lie on that side between the row before and this one, given
+    /// Points where switches, each with a side of zero, may lie on that side between the row before and this one, given
     /// the motions' coefficients in both.
     fn suspects(
         &self,

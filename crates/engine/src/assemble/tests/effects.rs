@@ -169,7 +169,7 @@ fn a_stiffness_that_depends_on_the_motion_leaves_no_potential() {
     assert!(system.graph.is_zero(output(&system, "potential_energy")));
 }
 
-/// Coulomb's friction, smoothed, of a pin: effects may speak of reactions.
+/// Coulomb's friction, smoothed, of a pin: effects may depend on reactions.
 #[test]
 fn effects_may_speak_of_reactions() {
     let mut m = Model::new();

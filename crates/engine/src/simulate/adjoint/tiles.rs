@@ -77,9 +77,9 @@ pub fn gradients(
 /// Functions of the time that motions are under, and whether these are followed backwards.
 #[derive(Clone, Copy)]
 pub struct Under<'f> {
-    /// One for each gradient, which is by these too.
+    /// Functions for each gradient, which also has derivatives by these.
     pub functions: Option<CellFunctions<'f>>,
-    /// Else the outputs alone are known, which cost a simulation, and derivatives are zero.
+    /// Whether derivatives are computed; else they are zero, and the outputs cost a simulation only.
     pub backwards: bool,
 }
 

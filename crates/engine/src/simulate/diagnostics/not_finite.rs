@@ -1,4 +1,4 @@
-//! Which term of the equations is no finite number at a state.
+//! The term of the equations that is no finite number at a state.
 
 use symdiff::{Binary, Expr, Graph, Node, Unary};
 

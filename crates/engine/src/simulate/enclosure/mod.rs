@@ -61,7 +61,7 @@ pub enum EnclosureError {
 #[derive(Clone, Debug)]
 pub struct Certifier<'s> {
     simulator: &'s Simulator,
-    /// The system, of whose start only as much is given as constraints do not say.
+    /// The system, with the given values of the start that constraints do not determine.
     system: System,
     program: EquationsProgram,
 }

@@ -1,4 +1,4 @@
-//! Which values the equations' switches have between rows, step by step.
+//! Ranges of the equations' switches between rows, step by step.
 
 use crate::compile::SwitchProgram;
 use crate::simulate::control::SwitchWatch;

@@ -64,7 +64,7 @@ pub(in crate::simulate) struct EventAdjoints<'s> {
     /// Accelerations on both sides.
     memory: StartAdjoints<'s>,
     events: Vec<(usize, Event)>,
-    /// Least and largest time by which a state is moved to before an event, s.
+    /// Time by which a state is moved to before an event, s: at first, and at most.
     back: [f64; 2],
 }
 

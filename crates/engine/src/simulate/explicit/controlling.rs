@@ -15,8 +15,8 @@ use crate::simulate::simulator::Simulator;
 #[derive(Debug)]
 pub(super) struct Tiles<'s> {
     tiles: Vec<ExplicitTile<'s, RowClosure<'s>>>,
-    /// Watch for switches, of a sample that is the only one: steps that end at switches of some samples would hide the
-    /// effect of the others between.
+    /// Watch for switches, of a sample that is the only one: steps that end at the switches of some samples would hide
+    /// the effect of switches on the samples between these.
     watch: Option<SwitchWatch<'s>>,
     features: Option<&'s Features>,
     samples: Vec<Sample>,

@@ -1,4 +1,4 @@
-//! Which mode of one configuration is which of another: by their shapes.
+//! Matching of the modes of two configurations by their shapes.
 
 use nalgebra::DMatrix;
 

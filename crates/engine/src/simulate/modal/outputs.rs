@@ -10,7 +10,7 @@ const GROWTH: &str = "growth";
 /// Results about a mode without states.
 const QUANTITIES: &[(&str, &str)] = &[("frequency", "Hz"), ("damping", "")];
 
-/// Whether an output is no part of a mode's shape or of a response, which are many.
+/// Whether an output is not one of the many numbers of a mode's shape or of a response.
 pub fn is_one_number(name: &str) -> bool {
     !name.contains(".shape.") && !name.starts_with("response.")
 }

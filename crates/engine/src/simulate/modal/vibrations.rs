@@ -25,7 +25,7 @@ pub struct Vibrations {
     program: EquationsProgram,
     scale: Vec<f64>,
     redundant: Vec<ConstraintId>,
-    /// Places of the coordinates whose velocities are states.
+    /// Indices of the coordinates whose velocities are states.
     states: Vec<usize>,
     gradients: Gradients,
     /// Random excitations, if any.

@@ -1,5 +1,5 @@
-//! Which functions of the time there are: the largest expressions that depend on the time and on parameters only, taken
-//! apart where they are sums, since each summand has a size of its own.
+//! Functions of the time: the largest expressions that depend on the time and on parameters only, taken apart where
+//! they are sums, since each summand has a size of its own.
 
 use std::collections::BTreeSet;
 use std::f64::consts::PI;
@@ -146,7 +146,7 @@ fn summands(graph: &Graph, time: Expr, whole: &[Expr]) -> BTreeSet<Expr> {
 #[derive(Clone, Debug)]
 pub(super) struct Condition {
     pub of: Expr,
-    /// Places of conditions of whole numbers by which this one jumps itself.
+    /// Indices of conditions of whole numbers at which this one itself jumps.
     pub jumps_with: Vec<usize>,
 }
 
