@@ -140,7 +140,7 @@ impl Node {
 }
 
 impl Equations {
-    /// Whether all indices are of something, and rows are as many as unknowns.
+    /// Whether all indices exist, rows and unknowns are equal in number, and no table jumps with the motion.
     pub fn is_sound(&self, parameters: usize) -> bool {
         let (n, m) = (self.coordinates, self.multipliers);
         let is_sound = |(own, node): (usize, &Node)| match *node {

@@ -18,8 +18,8 @@ pub struct Flow {
 }
 
 impl Flow {
-    /// Of the accelerations' derivatives by positions and velocities, n × 2n; `sizes` bounds [0 I; A], `jump` is where
-    /// g begins, and `defect` how fast it grows by itself. `None` where no bound is found.
+    /// Flow from the accelerations' derivatives by positions and velocities, n × 2n; `sizes` bounds [0 I; A], `jump` is
+    /// the initial g, and `defect` how fast it grows by itself. `None` if no bound is found.
     pub fn new(
         space: &Space,
         cell: Cell,
@@ -38,15 +38,16 @@ impl Flow {
 /// Accelerations over a tube about an approximation.
 #[derive(Clone, Debug)]
 pub struct Accelerations {
-    /// Bound of |f(ŷ) − ŵ|, n.
+    /// A: derivatives by positions and velocities, n × 2n.
     pub missed: Vec<f64>,
     /// A: by positions and velocities, n × 2n.
     pub slopes: Models,
 }
 
 impl Accelerations {
-    /// Of equations F(y, x) = 0 for x = (w, λ): their derivatives by x and by y over the tube, `inverse`, which may be
-    /// anything, for those by x, and bounds of F at the approximation. `None` where derivatives by x may be singular.
+    /// Accelerations from equations F(y, x) = 0 for x = (w, λ): their derivatives by x and by y over the tube,
+    /// `inverse`, which may be any matrix, for those by x, and bounds of F at the approximation. `None` where
+    /// derivatives by x may be singular.
     pub fn new(
         space: &ModelSpace,
         inverse: &Models,

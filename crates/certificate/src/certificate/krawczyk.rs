@@ -9,14 +9,14 @@ use crate::numerics::larger;
 /// The operator for a box of corrections |y| ≤ g: a bound of |C times the residual|, and one of |I − C J| with the
 /// derivatives J over the solutions in the box, row by row.
 pub struct Image {
-    /// Of |C times the residual|.
+    /// Bound of |C times the residual|.
     pub missed: Vec<f64>,
-    /// Of |I − C J|.
+    /// Bound of |I − C J|.
     pub contraction: Bounds,
 }
 
-/// A box that the operator maps into itself: for every ξ one solution is in it; `None` where none is found. `first` is
-/// where the search begins.
+/// A box that the operator maps into itself: for every ξ one solution is in it; `None` if none is found. The search
+/// begins at `first`.
 pub fn enclose(first: Vec<f64>, mut image: impl FnMut(&[f64]) -> Image) -> Option<Vec<f64>> {
     let mut box_of = first;
     for _ in 0..TUNING.attempts_of_krawczyk {

@@ -193,7 +193,7 @@ impl Models {
         self.bounds(space).rows().map(|row| row.iter().sum::<f64>()).fold(0.0, larger)
     }
 
-    /// The inverse at the box's centre, as constants; `None` where it has none.
+    /// The inverse at the box's centre, as constants; `None` if the matrix is singular there.
     pub fn inverse_at_centre(&self, space: &ModelSpace) -> Option<Self> {
         let centre = DMatrix::from_fn(self.rows, self.columns, |row, column| self.at(row, column)[0]);
         let inverse = centre.try_inverse()?;
@@ -230,7 +230,7 @@ impl Bounds {
     /// A matrix with this number of columns, from its entries row by row.
     ///
     /// # Panics
-    /// If these are not as many as the matrix has.
+    /// If the number of values is not `rows` × `columns`.
     pub fn of(rows: usize, columns: usize, values: &[f64]) -> Self {
         assert_eq!(values.len(), rows * columns);
         Self { rows, columns, values: values.to_vec() }

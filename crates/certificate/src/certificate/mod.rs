@@ -1,4 +1,4 @@
-//! Certificates of the true motion: what a proof has found, such that others can check it.
+//! Certificates of the true motion: results of a proof, such that others can check them.
 //!
 //! A [`Certificate`] has the equations of motion as a list of operations, polynomials of the accelerations and
 //! multipliers over cells of time and pieces of the box, a radius about them, and the bounds of the outputs. [`check`]
@@ -40,7 +40,7 @@ pub struct Certificate {
     pub model: String,
     /// Files that it was read from.
     pub files: Vec<ModelFile>,
-    /// Of its subsystems, which do not act on each other.
+    /// Its subsystems, which do not act on each other.
     pub systems: Vec<Arc<Certified>>,
 }
 
@@ -55,13 +55,13 @@ pub struct Certified {
     pub upper: Vec<f64>,
     /// Names of the outputs.
     pub outputs: Vec<String>,
-    /// What holds for the motion.
+    /// Equations of motion, of the start and of the outputs.
     pub equations: Equations,
     /// Total degree of the polynomials.
     pub order: usize,
     /// Instants, s, ascending.
     pub times: Vec<f64>,
-    /// Ends within which each output is at each instant, for every parameter of the box; `None` where nothing is said.
+    /// Ends within which each output is at each instant, for every parameter of the box; `None` if nothing is claimed.
     pub bounds: Vec<Vec<Option<[f64; 2]>>>,
     /// Pieces of the box.
     pub pieces: Vec<Piece>,

@@ -16,9 +16,9 @@ const HALF_UNIT: f64 = 0.51 * f64::EPSILON;
 /// signs of it that are not known.
 #[derive(Clone, Debug)]
 pub struct Space {
-    /// Of (τ, ξ).
+    /// Polynomials of (τ, ξ).
     pub cell: ModelSpace,
-    /// Of ξ.
+    /// Polynomials of ξ.
     pub box_of: ModelSpace,
     /// Power of τ in each monomial of (τ, ξ).
     power: Vec<usize>,
@@ -28,7 +28,7 @@ pub struct Space {
     constant_in_time: Vec<usize>,
     /// Monomial with one more τ, where the order allows it.
     raised: Vec<Option<usize>>,
-    /// Monomial with one less τ, where it has one.
+    /// Monomial with one less τ, if it has τ.
     lowered: Vec<Option<usize>>,
     /// Range of each monomial's powers of ξ.
     of_parameters: Vec<Interval>,

@@ -60,12 +60,13 @@ struct TableLine {
     periodic: bool,
 }
 
-/// Numbers, with a space between two. Zeros at the end of polynomials are left out.
+/// Numbers, separated by spaces.
 fn numbers(values: &[f64]) -> String {
     let texts: Vec<String> = values.iter().map(|&value| hexadecimal::write(value)).collect();
     texts.join(" ")
 }
 
+/// Texts of polynomials, without the zeros at their ends.
 fn polynomials(of: &[Vec<f64>]) -> Vec<String> {
     let kept = |own: &[f64]| own.iter().rposition(|&c| c != 0.0).map_or(0, |last| last + 1);
     of.iter().map(|own| numbers(&own[..kept(own)])).collect()
@@ -131,7 +132,7 @@ fn lists(texts: &[String]) -> Result<Vec<Vec<f64>>, String> {
 /// Reads a certificate.
 ///
 /// # Errors
-/// For the first line that is none of a certificate.
+/// For the first line that does not belong to a certificate.
 pub fn read(text: &str) -> Result<Certificate, FormatError> {
     let mut found: Option<Certificate> = None;
     for (index, line) in text.lines().enumerate() {

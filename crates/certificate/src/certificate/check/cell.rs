@@ -21,7 +21,7 @@ pub(super) struct Unknowns<'u> {
 }
 
 impl Unknowns<'_> {
-    /// Values of the rows over a state, and their derivatives by these places.
+    /// Values of the rows over a state, and their derivatives by the variables with these indices.
     fn linearised(&self, given: &Given, state: &State, indices: &[usize]) -> (Models, Models) {
         let space = given.space;
         let found = evaluate(self.equations, self.needed, given, state, true);
@@ -90,7 +90,7 @@ impl Unknowns<'_> {
 pub(super) struct Shapes {
     pub fine: Space,
     pub coarse: Space,
-    /// Of (τ, ξ), of each order, and of ξ alone.
+    /// Parameters as polynomials of (τ, ξ), of fine and of coarse order, and of ξ alone.
     pub parameters: [Vec<Vec<f64>>; 3],
 }
 
@@ -108,7 +108,7 @@ pub(super) struct Passed {
     pub cell: Cell,
     /// Polynomials of the motion over the cell.
     pub state: State,
-    /// At the cell's start.
+    /// Frame at the cell's start.
     frame: Frame,
     flow: Flow,
     /// Polynomials at the cell's end, and the frame there.

@@ -16,7 +16,7 @@ pub(super) struct Dual {
     pub by: BTreeMap<usize, Vec<f64>>,
 }
 
-/// What a motion is, in columns.
+/// Positions, velocities, accelerations and multipliers of a motion, one column each.
 #[derive(Clone, Debug)]
 pub(super) struct State {
     pub q: Models,
@@ -89,7 +89,7 @@ impl Arithmetic<'_> {
         self.binary(function, &one, &square)
     }
 
-    /// a − 1; without a radius where it is a number that has none.
+    /// a − 1; without a radius if `a` is a number and the difference is exact.
     fn one_less(&mut self, a: &[f64]) -> Vec<f64> {
         let less = a[0] - 1.0;
         // The difference is exact where it gives the number back.
@@ -145,7 +145,8 @@ impl Arithmetic<'_> {
             }
             Unary::Abs => self.unary(Unary::Sign, &a.value),
             Unary::Spline(spline, order) => self.unary(Unary::Spline(spline, order + 1), &a.value),
-            // Constant where it is known. Elsewhere it jumps with the motion, and no derivative shows it.
+            // The derivative is zero where the sign is known. Elsewhere the sign jumps with the motion, and no
+            // derivative shows it.
             Unary::Sign if self.space.sign(&a.value).is_some() => return Dual { value, by: BTreeMap::new() },
             Unary::Sign => return self.unknown(),
             // No derivative shows a jump.

@@ -1,4 +1,4 @@
-//! The checker: computes again what a certificate says, and refuses it where that does not follow.
+//! The checker: computes again what a certificate claims, and refuses it if the claim does not follow.
 //!
 //! Nothing but the equations and the arithmetic of Taylor models is trusted. For each piece of the box a start near the
 //! given polynomials is proven; positions and velocities are the integrals of the accelerations that are given; over
@@ -85,7 +85,7 @@ pub fn check(certificate: &Certificate) -> Result<Checked, Refusal> {
     Ok(checked)
 }
 
-/// Whether numbers are as many as they have to be.
+/// Whether lists have the lengths that they must have.
 fn is_sound(own: &Certified) -> Result<(), String> {
     let wrong = |what: &str| Err(what.to_owned());
     let (k, equations) = (own.parameters.len(), &own.equations);
