@@ -49,7 +49,7 @@ impl Along {
     /// How far a smooth response may go below and above an inner sample; `None` at the ends.
     pub fn smooth(&self) -> Option<[f64; 2]> {
         let (here, before, after) = (self.value(0)?, self.value(-1)?, self.value(1)?);
-        // Three samples do not tell how the second difference changes between them.
+        // Three samples do not show how the second difference changes between them.
         let unsure = if self.count == 3 { 1.0 + TUNING.unsure } else { 1.0 };
         let height = unsure * (before - 2.0 * here + after).abs() / 8.0;
         let lowest = here <= before && here <= after;
@@ -101,7 +101,7 @@ impl Along {
         let tip = || {
             let (left, right) = (here - self.value(-side)?, there - self.value(2 * side)?);
             let at = (there + right - here) / (left + right);
-            // To rounding, where it is at one of the two.
+            // Within rounding, if the tip is at one of the two samples.
             (-0.01..=1.01).contains(&at).then_some(here + at.clamp(0.0, 1.0) * left)
         };
         let most = |beyond: Option<f64>| beyond.map_or(total.abs(), |beyond| beyond.clamp(0.0, total.abs()));
@@ -114,8 +114,8 @@ impl Along {
         }
     }
 
-    /// The largest second difference `away` from here that a smooth response has, by those beyond, from number `outer`
-    /// on; of the same sign, since one that changes it is too short a wave to tell.
+    /// Largest second difference of a smooth response `away` samples from here, expected from those at `outer` and
+    /// beyond; of the same sign, since a wave that changes it is too short to resolve.
     fn expected(&self, bend: f64, away: isize, outer: isize) -> Option<f64> {
         let (beside, beyond) = (self.bend(outer)?, self.bend(outer + (outer - away).signum())?);
         let growth = (beside / beyond).abs().clamp(1.0, TUNING.most_growth);

@@ -95,8 +95,8 @@ impl Bernstein {
         }
     }
 
-    /// Where the polynomial bends most: the axis with the largest second difference n (n − 1) |Δ²b|, which is what
-    /// keeps coefficients and values apart.
+    /// Axis along which the polynomial bends most: that with the largest second difference n (n − 1) |Δ²b|, which keeps
+    /// coefficients and values apart.
     fn axis_to_split(&self, coefficients: &[f64]) -> usize {
         let (mut chosen, mut most) = (0, -1.0);
         let mut inner = coefficients.len();

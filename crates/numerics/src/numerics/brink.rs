@@ -1,10 +1,10 @@
-//! Ends of ranges beside jumps. Where a function jumps, its range ends at the brink, and a search that fits peaks stops
-//! short of it.
+//! Ends of ranges next to jumps. Where a function jumps, its range ends at the brink, and a search that fits peaks
+//! stops short of it.
 
 use super::extent::Extent;
 use super::tuning::TUNING;
 
-/// Moves ends that stand short of a jump to its brink: along each axis, the first drop beside the end is halved until
+/// Moves ends that stand short of a jump to its brink: along each axis, the first drop next to the end is halved until
 /// nothing lies between its two sides. `evaluate` gives all functions at some ξ, function by function.
 ///
 /// Over several parameters the brink may rise along itself; an end that was moved may be off by as much again.
@@ -25,7 +25,7 @@ pub fn to_brinks(extents: &mut [Extent], evaluate: impl Fn(&[Vec<f64>]) -> Vec<f
     }
 }
 
-/// Takes in values beside a brink. Over one parameter they end there.
+/// Takes in values next to a brink. Over one parameter the range ends there, and the gap stays.
 fn include(extent: &mut Extent, points: &[Vec<f64>], values: &[f64]) {
     let gap = extent.gap;
     extent.include(points, values);
@@ -34,13 +34,13 @@ fn include(extent: &mut Extent, points: &[Vec<f64>], values: &[f64]) {
     }
 }
 
-/// Two places on a line along an axis through an end, between which a function drops.
+/// Two points on a line along an axis through an end, between which a function drops.
 struct Drop {
     function: usize,
     sign: f64,
     end: Vec<f64>,
     axis: usize,
-    /// Where the line is on the high side and on the low side, with the values there.
+    /// Coordinate and value on the high side, and on the low side.
     high: (f64, f64),
     low: (f64, f64),
 }
@@ -70,7 +70,7 @@ impl Drop {
     }
 }
 
-/// The first drop beside each end, along each axis, either way.
+/// Finds the first drop next to each end, along each axis, either way.
 fn drops(extents: &mut [Extent], evaluate: &impl Fn(&[Vec<f64>]) -> Vec<f64>) -> Vec<Drop> {
     let mut drops = Vec::new();
     let mut points = Vec::new();

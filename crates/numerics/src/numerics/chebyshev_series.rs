@@ -85,7 +85,7 @@ impl ChebyshevSeries {
         self.coefficients.iter().fold(0.0, |most: f64, own| most.max(own.abs()))
     }
 
-    /// Largest coefficient of the last quarter: what may be missing.
+    /// Largest coefficient of the last quarter, an estimate of the missing ones.
     pub fn tail(&self) -> f64 {
         let last = &self.coefficients[self.coefficients.len() * 3 / 4..];
         last.iter().fold(0.0, |most: f64, own| most.max(own.abs()))

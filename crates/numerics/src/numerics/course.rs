@@ -2,7 +2,7 @@
 //! V(s), with s the time at which this sample is there.
 //!
 //! A crank's angle ripples over time, once or twice a turn, and where samples are some turns apart it ripples over
-//! their box too, which takes polynomials of high degree. All of them ripple at the same places, so that s does not.
+//! their box too, which takes polynomials of high degree. All of them ripple at the same angles, so that s does not.
 
 use super::range::Range;
 use super::tuning::TUNING;
@@ -19,11 +19,11 @@ pub struct Course {
     /// Whether they never fall.
     ascends: bool,
     pieces: Vec<Piece>,
-    /// Least and largest rate seen in each piece. (Apart from the pieces: each row looks at all of them.)
+    /// Least and largest rate seen in each piece. (Separate from the pieces, since each row examines all of them.)
     rates: Vec<(f64, f64)>,
 }
 
-/// Between two rows: the polynomial through the values and rates of these and of those beside them, in Newton's form.
+/// Between two rows: the polynomial through the values and rates of these and of their neighbours, in Newton's form.
 #[derive(Clone, Copy, Debug)]
 struct Piece {
     nodes: [f64; TERMS],
@@ -77,7 +77,7 @@ impl Piece {
 }
 
 impl Course {
-    /// Of a coordinate's values and rates at ascending times; `None` of too few.
+    /// Course of a coordinate's values and rates at ascending times; `None` if these are too few.
     pub fn new(times: Vec<f64>, mut values: Vec<f64>, mut rates: Vec<f64>) -> Option<Self> {
         if times.len() < 2 * TUNING.rows_beside {
             return None;
@@ -90,7 +90,7 @@ impl Course {
         Some(Self { sign, times, values, ascends, pieces, rates })
     }
 
-    /// The row in which a value is first reached, and the last one before it that is not above another.
+    /// The last row up to `low` before the first one from `high` on, and that one.
     fn around(&self, low: f64, high: f64) -> Option<(usize, usize)> {
         if self.ascends {
             let end = self.values.partition_point(|&value| value < high);
@@ -102,8 +102,8 @@ impl Course {
         Some((begin, end))
     }
 
-    /// The part about the places of some samples, and as much again beside it as far as the course rises there; `None`
-    /// where the course does not pass all of them, rests, or turns back.
+    /// The part around the values of some samples, and as much again on either side as far as the course rises there;
+    /// `None` if the course does not pass all of them, rests, or turns back.
     pub fn over(&self, range: Range) -> Option<Phase<'_>> {
         let (a, b) = (self.sign * range.lower, self.sign * range.upper);
         let (low, high) = (a.min(b), a.max(b));
@@ -229,7 +229,7 @@ mod tests {
         }
     }
 
-    /// A time that was told of one part is the time of another part that holds it.
+    /// A time that one part gives is the time that any part which contains it gives.
     #[test]
     fn times_do_not_depend_on_the_part() {
         let course = course(20.0);

@@ -1,4 +1,4 @@
-//! What a polynomial lacks, by how its coefficients decay.
+//! Truncation error of a polynomial, estimated from the decay of its coefficients.
 //!
 //! Chebyshev coefficients of an analytic response fall as ρ^−j. Their fall from the middle degree to the highest gives
 //! ρ, and the missing terms beyond are the rest of the geometric series. Where they do not fall, as at a narrow
@@ -9,12 +9,11 @@ use symdiff::math;
 use super::sparse_basis::{Before, SparseBasis};
 use super::tuning::TUNING;
 
-/// Size of the terms beyond those of a polynomial; zero where degrees are too low to tell.
+/// Size of the terms beyond those of a polynomial; zero if degrees are too low to estimate it.
 ///
-/// A tensor's lack higher degrees along each axis. Those of a sparse set lack what lies beyond its front: a term there
-/// is as large as follows from the terms before it as for a power of a weighted sum of the parameters, the least of
-/// what the axes say. Terms of all the front, and those beyond them, add up by their squares, as what may have either
-/// sign does.
+/// A tensor lacks higher degrees along each axis. A sparse set lacks the terms beyond its front: a term there has the
+/// size that follows from the terms before it as for a power of a weighted sum of the parameters, the least over all
+/// axes. Terms of the whole front, and those beyond them, add up by their squares, as terms of either sign do.
 pub fn truncation(basis: &SparseBasis, coefficients: &[f64]) -> f64 {
     let tails = (0..basis.dimension()).map(|axis| Tail::along(basis, coefficients, axis));
     if basis.is_tensor() {
@@ -46,7 +45,7 @@ struct Tail {
 }
 
 impl Tail {
-    /// `None` where nothing follows, or where the degree is too low to tell.
+    /// `None` if higher coefficients are zero, or if the degree is too low.
     fn along(basis: &SparseBasis, coefficients: &[f64], axis: usize) -> Option<Self> {
         let n = usize::from(basis.orders()[axis]);
         if n < TUNING.least_degree {
@@ -69,8 +68,8 @@ impl Tail {
         if envelope[n - 1] == 0.0 {
             return None;
         }
-        // Even or odd ones may be missing, so that pairs are compared. Falling ever faster, they tell less than over
-        // all higher degrees; in waves they may stand still.
+        // Even or odd ones may be missing, so that pairs are compared. If they fall ever faster, the last ratio is less
+        // than that over all higher degrees; in waves they may stand still.
         let fall = |from: usize| math::pow(envelope[n - 1] / envelope[from], 1.0 / (n - 1 - from) as f64);
         let overall = fall(n / 2);
         let rate = fall(n - 3).clamp(TUNING.caution * overall, overall).min(TUNING.slowest_decay);
@@ -105,7 +104,7 @@ mod tests {
         }
     }
 
-    /// Of a sparse set in two parameters, whose terms are those of a total degree.
+    /// Estimate and error of a sparse set in two parameters, whose terms are those of a total degree.
     fn told_of_sparse(n: u8, f: impl Fn(f64, f64) -> f64) -> (f64, f64) {
         let mut grid = SparseGrid::new(&[n; 2]);
         let indices = (1..=n).flat_map(|sum| (0..=sum).map(move |first| [first, sum - first]));

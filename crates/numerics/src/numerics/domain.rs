@@ -6,7 +6,7 @@ use std::ops::Deref;
 
 use serde::{Deserialize, Serialize};
 
-/// Values of the k parameters in their units: what one simulation runs with.
+/// Values of the k parameters in their units, for one simulation.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Sample(Vec<f64>);
 
@@ -39,7 +39,7 @@ impl Deref for Sample {
 /// k parameters, each known to lie in an interval.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ParameterBox {
-    /// What the parameters are meant to be; anywhere in the box.
+    /// Intended values of the parameters; anywhere in the box.
     pub nominal: Sample,
     /// Smallest values.
     pub lower: Vec<f64>,

@@ -1,4 +1,4 @@
-//! What an error that changes its sign now and then says of the time between: the line through its peaks.
+//! Envelope of an error that changes its sign now and then: the line through its peaks.
 
 use symdiff::math;
 
@@ -6,7 +6,7 @@ use symdiff::math;
 ///
 /// An estimate by halved steps is zero where both curves cross, where the error need not be. Between peaks the line is
 /// geometric, so that an error which grows or decays over decades is not taken for the larger of its ends. After the
-/// last peak it is held for as long as the last two are apart.
+/// last peak its value stays for as long as the last two are apart.
 pub fn envelope(estimates: &[f64]) -> Vec<f64> {
     let at = |row: usize| estimates[row];
     let is_peak = |row: &usize| {
@@ -15,7 +15,7 @@ pub fn envelope(estimates: &[f64]) -> Vec<f64> {
         at(*row) > 0.0 && at(*row) >= before && at(*row) >= after
     };
     let mut peaks = (0..estimates.len()).filter(is_peak).collect::<Vec<usize>>();
-    // The end of a rise that goes on is none.
+    // The end of a rise that goes on is no peak.
     if peaks.len() > 1 && peaks.last() == Some(&(estimates.len() - 1)) {
         let last = estimates.len() - 1;
         if peaks[peaks.len() - 2] + 1 < last {
@@ -58,7 +58,7 @@ mod tests {
         assert_eq!(envelope(&growing), growing);
         let decaying: Vec<f64> = growing.iter().rev().copied().collect();
         assert_eq!(envelope(&decaying), decaying);
-        // A wave that grows by decades is held on its own line.
+        // The envelope of a wave that grows by decades follows the wave's own line.
         let wave: Vec<f64> =
             (0..300).map(|row| math::exp(0.05 * f64::from(row)) * math::sin(0.3 * f64::from(row)).abs()).collect();
         let held = envelope(&wave);

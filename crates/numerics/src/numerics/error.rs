@@ -1,20 +1,21 @@
 //! How far a bound may be from the truth: the surrogate's error, and the time steps'.
 //!
 //! *Surrogate.* At validation samples the surrogate is compared with the simulation itself; its error is the largest
-//! difference. A scan's is what its own points say of the space between them.
+//! difference. A scan's error is estimated from its own points.
 //!
 //! *Time.* Some of them are simulated with halved steps too. The scheme is of second order, so that a value at step h
-//! is off by 4/3 of what halving changes (Richardson). What counts for an end of a band are the validation samples that
-//! carry it: those whose values lie near it.
+//! is off by 4/3 of the change by halving (Richardson). For an end of a band those validation samples count that carry
+//! it: those whose values lie near it.
 //!
-//! Both differences change sign now and then, where they say nothing of the error beside; each error is therefore held
-//! up by its neighbours and by a share of the largest so far, and that of the steps by the peaks before and after it.
+//! Both differences change sign now and then, where they say nothing of the error nearby; each error is therefore
+//! raised by its neighbours and by a share of the largest so far, and that of the steps by the peaks before and after
+//! it.
 
 use super::envelope::envelope;
 use super::range::Range;
 use super::tuning::TUNING;
 
-/// Error at step h over what halving h changes: 1/(1 − 2⁻²) for a second-order scheme.
+/// Ratio of the error at step h to the change by halving h: 1/(1 − 2⁻²) for a second-order scheme.
 pub const RICHARDSON: f64 = 4.0 / 3.0;
 
 /// Factor by which the estimates of the steps' error may be wrong.
@@ -63,7 +64,7 @@ pub fn time_error(range: Range, direct: &[f64], halved: &[f64]) -> f64 {
     if range.lower.is_nan() { f64::NAN } else { of_end(range.lower).max(of_end(range.upper)) }
 }
 
-/// Whether each end of a band has a validation sample with halved steps near it, so that these tell its error.
+/// Whether each end of a band has a validation sample with halved steps near it, so that these give its error.
 pub fn carries(range: Range, direct: &[f64]) -> bool {
     let reach = TUNING.carries * range.width();
     [range.lower, range.upper].iter().all(|end| direct.iter().any(|value| (value - end).abs() <= reach))
@@ -75,16 +76,16 @@ pub fn time_error_certified(range: Range, halved: Range) -> f64 {
 }
 
 impl BandError {
-    /// From the errors of every row, and the rows' ranges. `tolerance` is that of the error relative to `span`, which
-    /// is how far the output ranges at all, zero where it is at rest; what exceeds it is not resolved. Without one, a
-    /// band is lost from where its surrogate no longer follows the response.
+    /// From the errors of every row, and the rows' ranges. `tolerance` is that of the error relative to `span`, the
+    /// output's whole range, zero if it is at rest; a larger error is unresolved. Without one, a band is lost from
+    /// where its surrogate no longer follows the response.
     pub fn new(ranges: &[Range], surrogate: &[f64], time: &[f64], span: f64, tolerance: Option<f64>) -> Self {
         let surrogate = held_up(surrogate, SAFETY_OF_SURROGATE, TUNING.of_largest);
         Self::of(surrogate, ranges, time, span, tolerance, tolerance.is_none())
     }
 
-    /// The same where the surrogate's errors are told row by row, and beside it: a large error within a contact says
-    /// nothing of the rows before and behind it.
+    /// The same with errors of the surrogate that are known row by row: none is raised by other rows, since a large
+    /// error within a contact says nothing of the rows before and behind it.
     pub fn told(ranges: &[Range], surrogate: &[f64], time: &[f64], span: f64, tolerance: Option<f64>) -> Self {
         let surrogate = surrogate.iter().map(|error| SAFETY_OF_SURROGATE * error).collect();
         Self::of(surrogate, ranges, time, span, tolerance, false)
@@ -98,7 +99,7 @@ impl BandError {
             // Written so that NaN is not resolved.
             let at_rest = span == 0.0 && !total[row].is_nan();
             let small = |share: f64| total[row] <= share * span || at_rest;
-            // However narrow the band is: of what nothing varies, rounding is all that there is.
+            // However narrow the band is. An output at rest has rounding errors only.
             let follows = surrogate[row] <= (TUNING.lost * range.width()).max(TUNING.small_error * span) || at_rest;
             !tolerance.map_or(follows && small(TUNING.far_off), small)
         };
@@ -140,8 +141,7 @@ impl BandError {
         self.coarse[rows].fill(false);
     }
 
-    /// What the error of a row counts for, where something is decided by it: nothing that is not believed, and twice
-    /// where it is large.
+    /// Error of a row as it counts in decisions: `None` if it is not believed, doubled if it is only large.
     pub fn decisive(&self, row: usize) -> Option<f64> {
         match (self.unresolved[row], self.coarse[row]) {
             (false, _) => Some(self.total[row]),
@@ -161,7 +161,7 @@ impl BandError {
     }
 }
 
-/// Estimates with their safety, none far below those beside it, and a share of the largest before it.
+/// Estimates times their safety, none far below its neighbours or below a share of the largest before it.
 fn held_up(estimates: &[f64], safety: f64, of_largest: f64) -> Vec<f64> {
     let mut lasting = 0.0_f64;
     let held = |(own, beside): (&f64, f64)| {
@@ -172,7 +172,7 @@ fn held_up(estimates: &[f64], safety: f64, of_largest: f64) -> Vec<f64> {
     estimates.iter().zip(held_beside(estimates)).map(held).collect()
 }
 
-/// Estimates of rows, none far below those beside it.
+/// Estimates of rows, none far below its neighbours.
 pub fn held_beside(estimates: &[f64]) -> Vec<f64> {
     let held = |row: usize| {
         let beside = [row.wrapping_sub(1), row + 1].map(|row| estimates.get(row).copied().unwrap_or(0.0));

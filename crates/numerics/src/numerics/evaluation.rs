@@ -19,7 +19,7 @@ impl ChebyshevBasis {
         values[0]
     }
 
-    /// What evaluates polynomials of this basis at all samples of a grid.
+    /// Evaluator of polynomials of this basis at all samples of a grid.
     pub fn on(&self, grid: &TensorGrid) -> OnGrid {
         let axis = |(axis, n)| {
             let points = grid.axis(axis);

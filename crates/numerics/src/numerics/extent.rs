@@ -1,4 +1,4 @@
-//! What a search says of a function's range: its ends, where they are, and how far they may be missed.
+//! A function's range as found by a search: its ends, where they are, and how far they may be missed.
 
 use super::range::{Range, least, most};
 use super::tuning::TUNING;
@@ -12,12 +12,12 @@ pub struct Extent {
     pub gap: f64,
     /// ξ of the least and of the largest value.
     pub places: [Vec<f64>; 2],
-    /// Distances within which nothing else was seen beside them, along each axis.
+    /// Distances from these places within which nothing else was seen, along each axis.
     pub spacing: [Vec<f64>; 2],
 }
 
 impl Extent {
-    /// Of what cannot be bounded.
+    /// Extent of a function that cannot be bounded.
     pub fn unknown(dimension: usize) -> Self {
         let zeros = || [vec![0.0; dimension], vec![TUNING.near_extreme; dimension]];
         let [place, spacing] = zeros();
@@ -29,7 +29,7 @@ impl Extent {
         }
     }
 
-    /// Found at these places.
+    /// Extent found at these places.
     pub fn at(range: Range, gap: f64, places: [Vec<f64>; 2]) -> Self {
         let spacing = [vec![TUNING.near_extreme; places[0].len()], vec![TUNING.near_extreme; places[1].len()]];
         Self { range, gap, places, spacing }

@@ -1,11 +1,11 @@
-//! The extremes of functions of few parameters: local extremes on a lattice over the box, and then the peaks beside
+//! The extremes of functions of few parameters: local extremes on a lattice over the box, and then the peaks next to
 //! them.
 //!
-//! The lattice is as dense as the functions ask for: where a value is not what those beside it tell, by some share of
-//! the function's range, the lattice is made finer along that axis. Every local extreme from which the best may be
-//! within reach is refined. Points of a low-discrepancy sequence, which have nothing to do with the lattice, check the
-//! result: a value beyond it makes the lattice finer, and where that cannot be, it is an error. Nothing depends on the
-//! functions' size or sign.
+//! The lattice is as dense as the functions ask for: where a value differs from the prediction of its neighbours by
+//! some share of the function's range, the lattice is made finer along that axis. Every local extreme from which the
+//! best may be within reach is refined. Points of a low-discrepancy sequence, which have nothing to do with the
+//! lattice, check the result: a value beyond it makes the lattice finer, and where that cannot be, it is an error.
+//! Nothing depends on the functions' size or sign.
 
 use rustc_hash::FxHashMap;
 
@@ -101,8 +101,7 @@ pub fn extremes_near(known: &[Extent], evaluate: impl Fn(&[Vec<f64>]) -> Vec<f64
     search_near(known, false, evaluate)
 }
 
-/// Extremes of functions of which some places near them are known. Those that are known at corners of the box are
-/// believed.
+/// Extremes of functions near known places. Extremes known at corners of the box are believed.
 pub fn extremes_from(known: &[Extent], evaluate: impl Fn(&[Vec<f64>]) -> Vec<f64>) -> Vec<Extent> {
     search_near(known, true, evaluate)
 }
@@ -134,12 +133,12 @@ struct Search {
     /// Number of the function, and its negligible difference.
     output: usize,
     settled: f64,
-    /// Local extremes that are not refined, the highest last: their places on the lattice, and how low and how high
+    /// Local extremes that are not refined, the highest last: their indices on the lattice, and how low and how high
     /// they may be; the former negative.
     omitted: [Vec<(usize, f64)>; 2],
 }
 
-/// Searches until all ends are found, or cannot become the best by what matters.
+/// Searches until each end is found, or cannot exceed the best by a difference that matters.
 fn climb(ends: &mut [&mut End], evaluate: &impl Fn(&[Vec<f64>]) -> Vec<f64>) {
     let mut tops: FxHashMap<(usize, bool), f64> = FxHashMap::default();
     for _ in 0..TUNING.steps_to_end {
@@ -184,7 +183,7 @@ impl Search {
             }
             let best = if sign > 0.0 { range.upper } else { -range.lower };
             let mut peaks = lattice.peaks(values, sign);
-            // What cannot reach the best is left out. The best itself stays, and comes first.
+            // Peaks that cannot reach the best are omitted. The best itself stays, and comes first.
             peaks.retain(|&(_, height)| height >= best);
             let is_best = |index: usize| sign * values[index] == best;
             peaks.sort_by(|a, b| is_best(b.0).cmp(&is_best(a.0)).then(b.1.total_cmp(&a.1)).then(a.0.cmp(&b.0)));
@@ -200,7 +199,8 @@ impl Search {
         ends.fold(f64::NEG_INFINITY, |best, end| best.max(sign * end.best))
     }
 
-    /// Takes up more local extremes where one that was left may reach beyond the best by what matters. Whether it did.
+    /// Refines more local extremes if an omitted one may exceed the best by a difference that matters. Returns whether
+    /// it did.
     fn refine_more(&mut self, lattice: &Lattice) -> bool {
         let [below, above] = SIGNS.map(|sign| self.best(sign));
         let matters = self.settled.max(TUNING.left_candidate * (below + above));
@@ -232,7 +232,7 @@ impl Search {
         };
         let [Some((least, below)), Some((largest, above))] = [0, 1].map(|end| best((SIGNS[end], &self.omitted[end])))
         else {
-            // There is none where a value is NaN.
+            // There is no best where a value is NaN.
             return Extent::unknown(dimension);
         };
         Extent {
@@ -244,23 +244,23 @@ impl Search {
     }
 }
 
-/// A place from which one end of a function's range is sought.
+/// Search for one end of a function's range from one place.
 struct End {
     output: usize,
     sign: f64,
     /// The end is found when a step changes less than this.
     settled: f64,
-    /// What another end may be beyond the best by less than this is left.
+    /// The search is given up if it may exceed another end's best by less than this.
     matters: f64,
     /// Distances of the first neighbours.
     spacing: Vec<f64>,
-    /// Where the peak is looked for, and where it is believed to be.
+    /// Neighbourhood in which the peak is searched for, and where it is believed to be.
     around: Peak,
     xi: Vec<f64>,
     /// The best value seen, and where; NaN where one was not.
     best: f64,
     best_xi: Vec<f64>,
-    /// What the last step of the search changed.
+    /// Gain of the last step of the search.
     gap: f64,
     /// Whether the neighbours are nearer than those that were no better than the best.
     is_near: bool,
@@ -270,7 +270,7 @@ struct End {
 }
 
 impl End {
-    /// Not far from a place, with neighbours at these distances.
+    /// Search near a place, with neighbours at these distances.
     fn near(output: usize, xi: &[f64], spacing: &[f64], sign: f64, [settled, matters]: [f64; 2]) -> Self {
         let spacing: Vec<f64> = spacing.iter().map(|spacing| spacing.min(TUNING.near_extreme)).collect();
         let around = Peak::new(xi.to_vec(), spacing.clone());
@@ -303,14 +303,14 @@ impl End {
         self.sign * self.best
     }
 
-    /// How high it may become, if each round that is left brought what the last one did.
+    /// Height that it may reach, if each round that is left gains as much as the last one.
     fn promise(&self) -> f64 {
         self.height() + TUNING.steps_to_end as f64 * self.gap
     }
 
-    /// Leaves it where it cannot become better than the best by what matters.
+    /// Gives up if it cannot exceed the best by a difference that matters.
     fn give_up(&mut self, top: f64) {
-        // Written so that nothing follows from NaN. What gained nothing may have been led away from its peak.
+        // Written so that nothing follows from NaN. A search that gained nothing may have been led away from its peak.
         if !self.found && self.gap > 0.0 && self.height() < top && self.promise() <= top + self.matters {
             (self.found, self.given_up) = (true, self.promise() > top + self.settled);
         }
@@ -325,7 +325,7 @@ impl End {
     fn refine(&mut self, points: &[Vec<f64>], values: &[f64]) {
         let best = (0..values.len()).fold(0, |a, b| if self.sign * values[b] > self.sign * values[a] { b } else { a });
         let gain = self.sign * (values[best] - self.best);
-        // NaN beside the lattice's points changes nothing.
+        // NaN next to the lattice's points changes nothing.
         if gain > 0.0 {
             // Once may be by chance. (At first nothing is known, and NaN is not settled.)
             self.found = gain.max(self.gap) <= self.settled && !self.gap.is_nan();

@@ -49,8 +49,8 @@ pub struct Derivatives<'d> {
     pub scale: f64,
 }
 
-/// Pairs of parameters, first those whose product has the largest coefficient in some function, as far as the change of
-/// one parameter's derivatives with the other tells: for values spread evenly the mean square of ξ is 1/3.
+/// Pairs of parameters, first those whose product has the largest coefficient in some function, estimated from the
+/// change of one parameter's derivatives with the other: for values spread evenly the mean square of ξ is 1/3.
 fn products(points: &[Vec<f64>], functions: &[Derivatives<'_>]) -> Vec<(usize, usize)> {
     let k = points.first().map_or(0, Vec::len);
     let share = 3.0 / points.len() as f64;

@@ -29,8 +29,8 @@ impl Interpolation {
         })
     }
 
-    /// Parabolas at a time through three rows before it and three behind it: rows with their weights. Where an impact
-    /// is beside the time, they differ from [`fine`](Self::fine); none where the time is that of a row.
+    /// Parabolas at a time through three rows before it and three behind it: rows with their weights. Next to an impact
+    /// they differ from [`fine`](Self::fine); none if the time is that of a row.
     pub fn sides(&self, times: &[f64], time: f64) -> Vec<Vec<(usize, f64)>> {
         let next = times.partition_point(|own| *own < time);
         let sides = [next.saturating_sub(2), next + 1];

@@ -1,4 +1,4 @@
-//! A lattice of Chebyshev extrema, ξᵢ = −cos(π l/Nᵢ), and what the values on it say of the function between its points.
+//! A lattice of Chebyshev extrema, ξᵢ = −cos(π l/Nᵢ), and estimates from its values of the function between its points.
 //!
 //! In θ, ξ = cos θ, the lattice is even, and a function is even and periodic: differences need no exception at the
 //! box's faces.
@@ -69,7 +69,8 @@ impl Lattice {
         })
     }
 
-    /// Along each axis, how far at most a value is from what those beside it tell: a sixth of the fourth difference.
+    /// Along each axis, the largest difference of a value from the prediction of its neighbours: a sixth of the fourth
+    /// difference.
     pub(super) fn residuals(&self, values: &[f64]) -> Vec<f64> {
         let mut residuals = vec![0.0_f64; self.intervals.len()];
         for index in 0..values.len() {
@@ -80,7 +81,7 @@ impl Lattice {
         residuals
     }
 
-    /// Points that are at least as high as their neighbours along each axis, and how high the function may be beside
+    /// Points that are at least as high as their neighbours along each axis, and how high the function may be near
     /// each.
     pub(super) fn peaks(&self, values: &[f64], sign: f64) -> Vec<(usize, f64)> {
         let mut peaks = Vec::new();

@@ -1,4 +1,4 @@
-//! Lattices with the points that check them, made once for all functions that are looked at there.
+//! Lattices with the points that check them, made once for all functions that are evaluated there.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -8,7 +8,7 @@ use super::lattice::Lattice;
 use super::samples::spread;
 use super::tuning::TUNING;
 
-/// Lattices that were used, by their intervals along each axis; results do not depend on which are kept.
+/// Lattices that were used, by their intervals along each axis; results do not depend on which are stored.
 #[derive(Debug, Default)]
 pub struct Lattices(Mutex<Kept>);
 

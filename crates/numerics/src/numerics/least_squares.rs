@@ -1,4 +1,4 @@
-//! Linear least squares of many right-hand sides, with the errors at samples that are left out.
+//! Linear least squares of many right-hand sides, with leave-one-out errors of the samples.
 
 use super::tuning::TUNING;
 use nalgebra::{DMatrix, DVector};
@@ -8,17 +8,17 @@ use nalgebra::{DMatrix, DVector};
 pub struct LeastSquares {
     q: DMatrix<f64>,
     r: DMatrix<f64>,
-    /// By which columns were multiplied.
+    /// Factors of the columns.
     scales: Vec<f64>,
-    /// By which rows were.
+    /// Factors of the rows.
     weights: Vec<f64>,
-    /// Share of each sample's value in what the fit has there.
+    /// Leverages: the share of each sample's value in the fit's value there.
     leverages: Vec<f64>,
 }
 
 impl LeastSquares {
-    /// Of the values of all terms, sample by sample, with the weight of each sample; `None` where the samples do not
-    /// determine all terms.
+    /// Factorises the values of all terms, sample by sample, with the weight of each sample; `None` if the samples do
+    /// not determine all terms.
     pub fn new(terms: &[Vec<f64>], weights: Vec<f64>) -> Option<Self> {
         let (samples, count) = (terms.len(), terms.first()?.len());
         if samples < count || count == 0 {

@@ -14,7 +14,7 @@ pub struct Ledger {
 }
 
 impl Ledger {
-    /// Of `rows` rows and `outputs` outputs, of which nothing is known yet.
+    /// Ledger of `rows` rows and `outputs` outputs, without any value yet.
     pub fn new(rows: usize, outputs: usize) -> Self {
         Self { outputs, ends: Mutex::new(vec![EMPTY; rows * outputs]) }
     }
@@ -36,7 +36,7 @@ impl Ledger {
         ends.get_mut(row * self.outputs + output).into_iter().for_each(|end| widen(end, (range.lower, range.upper)));
     }
 
-    /// From the least to the largest value of an output in a row; empty where there is none.
+    /// From the least to the largest value of an output in a row; empty if it has no value.
     pub fn range(&self, row: usize, output: usize) -> Range {
         let ends = self.ends.lock().unwrap_or_else(PoisonError::into_inner);
         ends.get(row * self.outputs + output).copied().unwrap_or(EMPTY)

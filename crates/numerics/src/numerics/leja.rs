@@ -3,7 +3,7 @@
 //! Level l has the first l + 1 nodes of one sequence, and its polynomials those up to degree l. The sequence is Leja's
 //! (each node where the product of the distances to those before is largest), taken from the extrema of Chebyshev
 //! polynomials of degree 2, 4, 8, … one after the other, so that the first 3, 5, 9, 17, … nodes are
-//! Chebyshev–Lobatto's. One node a degree, and not as many as there were, is what keeps sets of many parameters small.
+//! Chebyshev–Lobatto's. One node a degree, rather than as many as there were, keeps sets of many parameters small.
 //!
 //! Values become coefficients in two steps, each triangular in levels: a new node's *surplus* is its value less what
 //! the level before predicts there; and f = Σ surplus · (polynomial of the node's level that is 1 there and 0 at the
@@ -40,7 +40,7 @@ fn sequence() -> Vec<f64> {
 /// One level's part of both steps.
 #[derive(Clone, Debug)]
 pub(super) struct Level {
-    /// What earlier nodes' values predict at this level's node.
+    /// Weights of earlier nodes' values in the prediction at this level's node.
     pub prediction: Vec<f64>,
     /// Coefficients, degrees 0…l, of the polynomial that is 1 at this level's node and 0 at those before.
     pub cardinal: Vec<f64>,

@@ -5,7 +5,7 @@ use super::cheapest::Linear;
 use super::tuning::TUNING;
 
 /// The step s, `least` ≤ s ≤ `most`, at which the least of the `goals` is largest while all `limits` are not negative;
-/// where they cannot be, the largest violation, relative to what the limit changes over the box, is as small as can be.
+/// where they cannot be, the largest violation, relative to the limit's change over the box, is as small as can be.
 /// Values are those at s = 0, slopes are derivatives with respect to s.
 pub fn best_step(goals: &[Linear], limits: &[Linear], least: &[f64], most: &[f64]) -> Vec<f64> {
     let k = least.len();

@@ -1,6 +1,6 @@
-//! Trajectories → `Bounds`: which parameters to run, and what their responses say of the whole box.
+//! Trajectories → `Bounds`: which parameters to run, and bounds from their responses over the whole box.
 //!
-//! A method asks for samples of a [`ParameterBox`] in the coordinates ξ ∈ [−1, 1]^k and bounds what comes back:
+//! A method asks for samples of a [`ParameterBox`] in the coordinates ξ ∈ [−1, 1]^k and bounds the responses:
 //!
 //! - `ChebyshevBasis`: responses at its nodes → coefficients → [`PolynomialRange`];
 //! - [`SparseGrid`]: responses at nodes that grow where they are needed → `SparseTransform` → coefficients in a

@@ -1,4 +1,4 @@
-//! The order at which three steps of different length agree: what the error by halving is worth.
+//! The order at which three steps of different length agree: a check of the error by halving.
 //!
 //! With an error C hᵠ, steps h, h/2 and r h give differences in the ratio ρ = (2⁻ᵠ − rᵠ)/(1 − 2⁻ᵠ). Where q is not near
 //! 2, the error is not that of a second-order scheme: steps are too long for the motion that they resolve, or the
@@ -26,7 +26,7 @@ pub struct Differences {
     pub all: f64,
 }
 
-/// What a row's error by halving, for order 2, is to be corrected by.
+/// Correction of a row's error by halving, which assumes order 2.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Correction {
     /// It is multiplied by this, 1 or more,
@@ -70,8 +70,7 @@ pub fn corrections(rows: &[Differences], ratio: f64, switched_from: Option<usize
     (0..rows.len()).map(of_row).collect()
 }
 
-/// The order q at which (2⁻ᵠ − rᵠ)/(1 − 2⁻ᵠ) is `found`, which falls with q; between 0 and 8, NaN where it is not
-/// known.
+/// The order q at which (2⁻ᵠ − rᵠ)/(1 − 2⁻ᵠ) is `found`, which falls with q; between 0 and 8, NaN if `found` is.
 fn order(found: f64, ratio: f64) -> f64 {
     if found.is_nan() {
         return f64::NAN;

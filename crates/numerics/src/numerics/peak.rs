@@ -1,4 +1,4 @@
-//! From the best point of a grid to the peak beside it: by the quadratic through a point and its neighbours, as far as
+//! From the best point of a grid to the peak next to it: by the quadratic through a point and its neighbours, as far as
 //! those reach.
 
 use super::tuning::TUNING;
@@ -156,7 +156,7 @@ fn along_faces(slope: &DVector<f64>, bend: &DMatrix<f64>) -> Vec<f64> {
     step.as_slice().to_vec()
 }
 
-/// From a place with this pull to the peak of the quadratic along the free axes, or up where it has none.
+/// Step from a point with this pull to the peak of the quadratic along the free axes, or upwards if it has no peak.
 fn way_up(free: &[usize], pull: &DVector<f64>, bend: &DMatrix<f64>) -> DVector<f64> {
     let own = DMatrix::from_fn(free.len(), free.len(), |a, b| bend[(free[a], free[b])]);
     let up = DVector::from_fn(free.len(), |index, _| pull[free[index]]);

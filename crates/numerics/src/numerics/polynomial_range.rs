@@ -6,7 +6,7 @@
 //! Nᵢ ≥ 16 nᵢ. With q(θ) = p(cos θ₁, …, cos θ_k) and δᵢ = π/(2Nᵢ), the largest distance to a grid line:
 //!
 //! - *Ehlich & Zeller (1964).* A polynomial of degree n has max|p| ≤ max over the grid of |p| / cos(n δ). Applied to
-//!   one variable after the other, where each is a polynomial while the others are held: max|p| ≤ max over the tensor
+//!   one variable after the other, where each is a polynomial while the others are fixed: max|p| ≤ max over the tensor
 //!   grid of |p| · Π 1/cos(nᵢ δᵢ). This bounds |p|, so it is applied to p − m, where m is the middle of the range [m −
 //!   h, m + h] on the grid, and |p − m| ≤ h on the grid: no value lies outside m ± h Π 1/cos(nᵢ δᵢ). (At most 0.49 %
 //!   wider for each parameter, as cos(π/32) = 1/1.0048.)
@@ -16,8 +16,8 @@
 //!   max q ≤ (max over the grid) + ½ Σ |c_j| (Σᵢ jᵢ δᵢ)², and likewise below. (For smooth responses, whose high
 //!   coefficients are small, this is the sharper of the two by far.)
 //!
-//! Where that grid would be too large, the Bernstein form with branch and bound takes its place, within 0.1 % of the
-//! width as far as its work limit allows. All hold up to rounding, for which a margin is added.
+//! Where that grid would be too large, the Bernstein form with branch and bound replaces it, within 0.1 % of the width
+//! as far as its work limit allows. All hold up to rounding, for which a margin is added.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -71,9 +71,8 @@ impl PolynomialRange {
         Self { kind, count: orders.iter().map(|n| n + 1).product(), enclosure, varying: Vec::new() }
     }
 
-    /// Range of the polynomial with these Chebyshev coefficients (last index fastest). Exact for a constant; unknown
-    /// if any coefficient is infinite or NaN. Never wider than c₀ ± Σ|c|.
-    /// With what the polynomial is seen to attain.
+    /// Range of the polynomial with these Chebyshev coefficients (last index fastest), and the range that values
+    /// attain. Exact for a constant; unknown if any coefficient is infinite or NaN. Never wider than c₀ ± Σ|c|.
     pub fn enclose(&mut self, coefficients: &[f64]) -> Enclosed {
         assert_eq!(coefficients.len(), self.count, "coefficients of another shape");
         let radius: f64 = coefficients[1..].iter().map(|c| c.abs()).sum();
@@ -102,7 +101,7 @@ impl PolynomialRange {
     }
 }
 
-/// The tensor grid of Chebyshev extrema and the margins for what lies between its points.
+/// The tensor grid of Chebyshev extrema and the margins for values between its points.
 #[derive(Clone, Debug)]
 struct ExtremaGrid {
     /// Evaluation along all axes but the last: rows are points, columns are degrees.
@@ -116,7 +115,7 @@ struct ExtremaGrid {
     /// Bound on the rounding errors of a value, relative to Σ|c|.
     rounding: f64,
     work: Work,
-    /// What values of each row lie within.
+    /// Interval that contains the values of each row.
     reach: Vec<Range>,
     even: Vec<f64>,
     odd: Vec<f64>,
@@ -187,7 +186,7 @@ impl ExtremaGrid {
         let first = [lowest.1, highest.1];
         for (place, number) in first.into_iter().chain(0..self.reach.len()).enumerate() {
             let reach = self.reach[number];
-            // Written so that NaN is looked at.
+            // Written so that rows with NaN are examined.
             let is_within = found.lower <= reach.lower && reach.upper <= found.upper;
             if is_within || first[..place.min(2)].contains(&number) {
                 continue;

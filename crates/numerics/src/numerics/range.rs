@@ -10,10 +10,10 @@ pub struct Range {
 }
 
 impl Range {
-    /// Of what cannot be bounded.
+    /// Range of values that cannot be bounded.
     pub const UNKNOWN: Self = Self { lower: f64::NAN, upper: f64::NAN };
 
-    /// Of values: from the least to the largest; unknown if there are none or one is NaN.
+    /// Range from the least to the largest value; unknown if there are none or one is NaN.
     pub fn of(values: &[f64]) -> Self {
         if values.is_empty() || values.iter().any(|value| value.is_nan()) {
             return Self::UNKNOWN;
@@ -63,7 +63,7 @@ pub struct Enclosed {
 }
 
 impl Enclosed {
-    /// Of what cannot be bounded.
+    /// Enclosure of values that cannot be bounded.
     pub const UNKNOWN: Self = Self { outer: Range::UNKNOWN, attained: Range::UNKNOWN };
 
     /// How much too wide `outer` may be, at the worse end.
@@ -91,7 +91,7 @@ pub fn larger(a: f64, b: f64) -> f64 {
     if a >= b || a.is_nan() { a } else { b }
 }
 
-/// Of no part yet.
+/// Range of no part yet.
 pub const EMPTY: Range = Range { lower: f64::INFINITY, upper: f64::NEG_INFINITY };
 
 /// The range of two parts together. Its error is how far its ends may lie from the true ones, given those of the
@@ -117,7 +117,7 @@ pub fn error_of_larger([a, b]: [f64; 2], [of_a, of_b]: [f64; 2]) -> f64 {
     if of_a.is_nan() || of_b.is_nan() { f64::NAN } else { above.abs().max(below.abs()) }
 }
 
-/// Values that are looked at side by side.
+/// Number of values that are compared at once.
 const LANES: usize = 16;
 
 /// Least and largest of some values; NaN does not count. (In lanes, which need not wait for each other.)

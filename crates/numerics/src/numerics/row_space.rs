@@ -5,7 +5,7 @@
 
 use super::tuning::TUNING;
 
-/// A = L B for the independent rows of A, with orthonormal rows of B, and an orthonormal basis of what A maps to zero.
+/// A = L B for the independent rows of A, with orthonormal rows of B, and an orthonormal basis of the null space of A.
 #[derive(Clone, Debug, Default)]
 pub struct RowSpace {
     /// Numbers of the independent rows, in the order of B's.
@@ -19,7 +19,7 @@ pub struct RowSpace {
 }
 
 impl RowSpace {
-    /// Of rows of n entries each.
+    /// Space of rows of n entries each.
     pub fn of(rows: &[Vec<f64>], n: usize) -> Self {
         let sizes: Vec<f64> = rows.iter().map(|row| norm(row)).collect();
         let mut left: Vec<Vec<f64>> = rows.to_vec();

@@ -68,8 +68,9 @@ impl TensorGrid {
     }
 }
 
-/// Corners of [−1, 1]^k: all where they are not more than `most` (a power of two), else `most` of them such that any
-/// two axes, unless they are as many as `most` apart, meet at every pair of their ends (the signs of Walsh functions).
+/// Corners of [−1, 1]^k: all if they are not more than `most` (a power of two), else `most` of them such that any two
+/// axes, unless their indices differ by a multiple of `most` − 1, meet at every pair of their ends (the signs of Walsh
+/// functions).
 pub fn corners(k: usize, most: usize) -> Vec<Vec<f64>> {
     let all = k < usize::BITS as usize && 1 << k <= most;
     let mask = |axis: usize| if all { 1 << axis } else { axis % (most - 1) + 1 };
@@ -88,16 +89,16 @@ pub fn spread(k: usize, count: usize) -> Vec<Vec<f64>> {
     (0..count).map(|index| (0..k).map(|axis| 2.0 * at(index, axis) - 1.0).collect()).collect()
 }
 
-/// All points at which a surrogate of so high a degree is held against the simulation: [`step_validation`], then those
-/// held out, which are two more than the degree: a polynomial that wiggles as often as it can shows at one of them.
+/// All points at which a surrogate of this degree is compared with the simulation: [`step_validation`], then points
+/// held out, at least two more than the degree: a polynomial that wiggles as often as it can shows at one of them.
 pub fn validation(k: usize, degree: usize) -> Vec<Vec<f64>> {
     let mut points = step_validation(k);
     points.extend(spread(k, if k == 0 { 0 } else { TUNING.held_out.max(k).max(degree + 2) }));
     points
 }
 
-/// Points at which steps are halved, and a surrogate is held against the simulation too: centre, faces and corners, all
-/// 3^k of them for up to three axes, else the centre, both ends of every axis and 16 corners.
+/// Points at which steps are halved, and a surrogate is compared with the simulation too: centre, faces and corners,
+/// all 3^k of them for up to three axes, else the centre, both ends of every axis and 16 corners.
 pub fn step_validation(k: usize) -> Vec<Vec<f64>> {
     if k <= TUNING.few_axes {
         let lattice = TensorGrid::full_factorial(&vec![3; k]);

@@ -2,11 +2,11 @@
 //!
 //! Between two samples a response can go beyond both. Past an extreme along an axis, a smooth one by at most an eighth
 //! of the second difference (that of the parabola through it and its neighbours); past an extreme at an axis' end, if
-//! it bends back before it gets there. Where second differences stand out against those beside them, it is not smooth
-//! there: at a kink between two samples it goes as far as the lines from both sides lead, at most a quarter of what
-//! their second differences have too much; beside a jump, where these have either sign, half of the jump. The furthest
-//! that any sample leads to in this way is the error stated of a scan. Where a sample is NaN, the others are bounded,
-//! and the error is NaN.
+//! it bends back before it gets there. Where second differences stand out against their neighbours, it is not smooth
+//! there: at a kink between two samples it goes as far as the lines from both sides lead, at most a quarter of the
+//! excess of their second differences; next to a jump, where these differ in sign, half of the jump. The largest such
+//! distance of any sample is the stated error of a scan. Where a sample is NaN, the others are bounded, and the error
+//! is NaN.
 
 use std::ops::Range as Rows;
 
@@ -61,7 +61,7 @@ impl ScanBounds {
         }
     }
 
-    /// Adds what another part of the same scan found.
+    /// Merges another part of the same scan.
     ///
     /// # Panics
     /// If it has other rows or outputs.
@@ -98,7 +98,7 @@ impl ScanBounds {
         if least.value <= largest.value { Range { lower: least.value, upper: largest.value } } else { Range::UNKNOWN }
     }
 
-    /// How far the response may go beyond those bounds between the samples; NaN where a sample is none.
+    /// How far the response may go beyond those bounds between the samples; NaN if a sample is NaN.
     pub fn error(&self, time: usize, output: usize) -> f64 {
         if self.gaps[time * self.outputs + output] {
             return f64::NAN;
@@ -125,7 +125,7 @@ fn ends(values: &[f64]) -> [f64; 2] {
 /// More than the response can go beyond each of a line's samples.
 #[derive(Default)]
 struct Reach {
-    /// Largest second differences along an axis, beside each sample.
+    /// Second differences along an axis at each sample, without sign.
     along: Vec<f64>,
     /// Their sum over the axes, and the largest of them.
     sum: Vec<f64>,
@@ -133,8 +133,8 @@ struct Reach {
 }
 
 impl Reach {
-    /// Of samples of a grid: along each axis that is at most the largest of the second differences at a sample and at
-    /// the two beside it.
+    /// Fills in the reach at samples of a grid: along each axis it is at most the largest of the second differences at
+    /// a sample and at its two neighbours.
     fn of(&mut self, points: &[usize], values: &[f64]) {
         let Self { along, sum, largest } = self;
         for of_all in [&mut *sum, largest] {

@@ -15,7 +15,7 @@ pub const STEP_NODES: usize = 8;
 /// Motions of some samples, cut at the events that they meet.
 #[derive(Clone, Debug, Default)]
 pub struct CutMotions {
-    /// Of each word, which is a sequence of events, those of its samples.
+    /// Motions of the samples of each word, which is a sequence of events.
     pub words: Vec<SegmentMotions>,
     /// Surfaces between words.
     pub boundaries: Vec<BoundaryMargins>,
@@ -72,7 +72,7 @@ impl CutMotions {
 }
 
 impl SegmentMotions {
-    /// Those of some of the samples, by their places.
+    /// Motions of some of the samples, by their indices.
     #[must_use]
     pub fn picked(&self, places: &[usize]) -> Self {
         let count = self.samples.len();
@@ -86,8 +86,8 @@ impl SegmentMotions {
         }
     }
 
-    /// Positions and velocities at a time on a segment's branch, which goes on beyond its ends; `None` where a sample
-    /// is beyond all steps there by more than `most_beyond` times their length.
+    /// Positions and velocities at a time on a segment's branch, which goes on beyond its ends; `None` if a sample is
+    /// beyond all steps there by more than `most_beyond` times their length.
     pub fn at(&self, segment: usize, time: f64, most_beyond: f64) -> Option<BranchMotion> {
         let (steps, count) = (&self.steps[segment], self.samples.len());
         let lines = self.nodes[segment].first().map_or(0, |node| node.len() / count.max(1));
@@ -191,8 +191,8 @@ pub fn step_weights(ends: &[f64], share: f64) -> (usize, [f64; STEP_NODES]) {
 struct BranchWeights {
     step: usize,
     all: [f64; STEP_NODES],
-    /// Beyond the segment, the number of the first and the weights of all nodes but the farthest: what the polynomial
-    /// through these differs by tells how far that through all is off.
+    /// Beyond the segment, the number of the first and the weights of all nodes but the farthest: the difference of the
+    /// polynomial through these estimates the error of that through all.
     others: Option<(usize, Vec<f64>)>,
 }
 
@@ -210,9 +210,9 @@ impl BranchWeights {
     }
 }
 
-/// The step of a segment that is least beyond a share, in its own lengths, and the place of the share in it: steps are
-/// shorter beside events, so that a longer one before reaches farther. `None` where it is beyond by more than
-/// `most_beyond` times the step's length.
+/// The step of a segment that a share exceeds least, in lengths of the step, and the share within it: steps next to
+/// events are shorter, so that a longer one before them reaches farther. `None` if the share is beyond the step by more
+/// than `most_beyond` times its length.
 pub fn nearest_step(ends: &[f64], share: f64, most_beyond: f64) -> Option<(usize, f64)> {
     let local = |step: usize| {
         let begin = step.checked_sub(1).map_or(0.0, |before| ends[before]);

@@ -1,8 +1,8 @@
 //! Functions that are sums of functions of fewer parameters: their ranges are the sums of those functions' ranges.
 //!
 //! Parameters i and j act together where the mixed difference f(…aᵢ…bⱼ…) − f(…aᵢ…) − f(…bⱼ…) + f is not zero. It is
-//! taken about one point of a low-discrepancy sequence and between others; what groups of parameters are found is tried
-//! at further points.
+//! taken about one point of a low-discrepancy sequence and between others; the groups of parameters that are found are
+//! tried at further points.
 
 use super::samples::spread;
 use super::tuning::TUNING;

@@ -8,14 +8,14 @@
 use super::sparse_basis::SparseBasis;
 use super::tensor::Matrix;
 
-/// SobolIndices of the parameters in the variance.
+/// Sobol indices of the parameters: shares in the variance.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SobolIndices {
-    /// Of each parameter alone.
+    /// Index of each parameter alone.
     pub main: Vec<f64>,
-    /// Of each parameter, alone and together with others.
+    /// Index of each parameter, alone and together with others.
     pub total: Vec<f64>,
-    /// Of parameters together: 1 − Σ main.
+    /// Share of parameters together: 1 − Σ main.
     interactions: f64,
 }
 

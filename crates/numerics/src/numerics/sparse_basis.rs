@@ -18,7 +18,7 @@ pub struct SparseBasis {
     dimension: usize,
     /// Degree along each axis, term after term.
     degrees: Vec<u8>,
-    /// Of each term but the first.
+    /// Factors of each term but the first.
     factors: Vec<Factor>,
     /// Highest degree along each axis.
     orders: Vec<u8>,
@@ -28,7 +28,7 @@ pub struct SparseBasis {
     front: Vec<Vec<Before>>,
 }
 
-/// What an index beyond the terms follows along one axis.
+/// Terms before an index that is beyond the terms, along one axis.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Before {
     pub axis: u8,
@@ -36,7 +36,7 @@ pub(super) struct Before {
     pub degree: u8,
     /// The term of one degree less,
     pub last: u32,
-    /// and that of two, where there is one.
+    /// and that of two, if there is one.
     pub earlier: Option<u32>,
 }
 
@@ -44,7 +44,7 @@ pub(super) struct Before {
 #[derive(Clone, Copy, Debug)]
 struct Factor {
     earlier: u32,
-    /// Place in the table of all axes' polynomials.
+    /// Index in the table of all axes' polynomials.
     polynomial: u32,
 }
 
@@ -63,7 +63,7 @@ impl Fibres {
     }
 }
 
-/// Room for evaluation, kept between calls.
+/// Buffers for evaluation, reused between calls.
 #[derive(Clone, Debug, Default)]
 pub struct SparseWork {
     polynomials: Vec<Lanes>,

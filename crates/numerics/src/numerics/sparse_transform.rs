@@ -20,7 +20,7 @@ pub struct SparseTransform {
     levels: Vec<&'static Level>,
 }
 
-/// Room for [`SparseTransform::coefficients`], kept between calls.
+/// Buffers for [`SparseTransform::coefficients`], reused between calls.
 #[derive(Clone, Debug, Default)]
 pub struct TransformWork {
     nodes: Vec<Lanes>,
@@ -34,7 +34,7 @@ impl SparseTransform {
         Self { basis, levels: (1..=highest).map(Level::of).collect() }
     }
 
-    /// What the coefficients stand before.
+    /// Basis of the coefficients.
     pub fn basis(&self) -> &SparseBasis {
         &self.basis
     }

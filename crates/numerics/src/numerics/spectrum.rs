@@ -77,7 +77,7 @@ impl Spectrum {
         }
     }
 
-    /// ∫ G from a to b; NaN where it has none.
+    /// ∫ G from a to b; NaN if the integration fails.
     pub fn variance(&self, [from, to]: [f64; 2]) -> f64 {
         let mut ends = vec![from];
         ends.extend(self.breaks().into_iter().filter(|own| from < *own && *own < to));

@@ -23,7 +23,7 @@ enum Fit {
     Interpolation(Box<SparseTransform>),
 }
 
-/// Room for [`Surrogate::coefficients`], kept between calls.
+/// Buffers for [`Surrogate::coefficients`], reused between calls.
 #[derive(Clone, Debug, Default)]
 pub struct SurrogateWork {
     tensor: Work,
@@ -31,7 +31,7 @@ pub struct SurrogateWork {
 }
 
 impl Surrogate {
-    /// Of degree `orders[i]` ≤ 255 in parameter i, from `nodes[i]` nodes along it.
+    /// Surrogate of degree `orders[i]` ≤ 255 in parameter i, from `nodes[i]` nodes along it.
     pub fn tensor(orders: &[usize], nodes: &[usize]) -> Self {
         let quadrature = ChebyshevBasis::new(orders, nodes);
         let grid = quadrature.grid();
@@ -65,7 +65,7 @@ impl Surrogate {
         self.middle
     }
 
-    /// What the coefficients stand before.
+    /// Basis of the coefficients.
     pub fn basis(&self) -> &SparseBasis {
         &self.basis
     }

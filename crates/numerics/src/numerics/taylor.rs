@@ -48,7 +48,7 @@ impl TaylorRange {
         Self { kind, monomials, even, tensor }
     }
 
-    /// What the coefficients stand before.
+    /// Monomials of the coefficients.
     pub fn monomials(&self) -> &Monomials {
         &self.monomials
     }

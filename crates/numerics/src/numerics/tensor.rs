@@ -79,7 +79,7 @@ fn multiply(matrix: &Matrix, from: &[f64], to: &mut [f64], inner: usize) {
     }
 }
 
-/// Two buffers to work in, kept between calls.
+/// Two work buffers, reused between calls.
 #[derive(Clone, Debug, Default)]
 pub struct Work {
     current: Vec<f64>,

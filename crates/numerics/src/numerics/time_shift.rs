@@ -12,7 +12,7 @@ use super::tuning::TUNING;
 pub struct TimeShift {
     /// Largest shift, s.
     pub shift: f64,
-    /// Largest error that is none, in the coordinate's unit.
+    /// Largest error that is no shift in time, in the coordinate's unit.
     pub remainder: f64,
 }
 
@@ -28,12 +28,12 @@ pub struct Turning {
 }
 
 impl TimeShift {
-    /// Rows that tell the shift in one of them.
+    /// Rows that determine the shift in one of them.
     pub fn window(row: usize, rows: usize) -> std::ops::Range<usize> {
         row.saturating_sub(TUNING.rows_of_shift)..(row + TUNING.rows_of_shift + 1).min(rows)
     }
 
-    /// From every sample's coordinate in a window of rows; none where some sample does not turn in it, so that a shift
+    /// From every sample's coordinate in a window of rows; `None` if some sample does not turn in it, so that a shift
     /// and an offset look alike.
     ///
     /// The remainder is the largest in the whole window, the offset with it: the remainder of a single row may be zero
@@ -82,7 +82,7 @@ mod tests {
     fn a_shift_is_told_from_the_rest() {
         let late = TimeShift::of([sample(|_, v| -0.02 * v, 0.0), sample(|_, v| 0.01 * v, 1.0)].into_iter()).unwrap();
         assert!((late.shift - 0.02).abs() < 1e-12 && late.remainder < 1e-12, "{late:?}");
-        // An amplitude that shrinks is none.
+        // An amplitude that shrinks is no shift.
         let damped = TimeShift::of([sample(|t, _| 0.02 * math::sin(t), 0.3)].into_iter()).unwrap();
         assert!(damped.remainder > 0.015 && damped.shift < 0.01, "{damped:?}");
     }

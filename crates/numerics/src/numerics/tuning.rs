@@ -18,7 +18,7 @@ tuning! {
         bernstein_work: usize = 1 << 22, moves "interval ranges of polynomials";
         /// Fewest times that a box may be split, however many numbers are averaged.
         bernstein_splits: usize = 64, moves "interval ranges of polynomials";
-        /// Distances from an end at which a jump is looked for: from 2 downwards, each a quarter of the one before.
+        /// Distances from an end at which a jump is searched for: from 2 downwards, each a quarter of the one before.
         distances: i32 = 26, moves "ranges beside jumps";
         /// A drop by this share of the range's width may be a jump.
         drop: f64 = 1e-3, moves "ranges beside jumps";
@@ -30,17 +30,17 @@ tuning! {
         settled_multipliers: f64 = 1e-10, moves "tolerances that are found";
         /// Halvings of the logarithm of a multiplier.
         halvings_of_multiplier: usize = 80, moves "tolerances that are found";
-        /// How far below the first guess a multiplier is looked for, as a share of it.
+        /// How far below the first guess a multiplier is searched for, as a share of it.
         smallest_multiplier: f64 = 1e-12, moves "tolerances that are found";
         /// Multiple of the multiplier at which the constraint alone makes all sizes as small as they may be, up to
-        /// which it is looked for.
+        /// which the search goes.
         largest_multiplier: f64 = 1e6, moves "tolerances that are found";
-        /// Least rate on the way, as a share of the mean where samples are: where the course all but rests, times tell
-        /// no places.
+        /// Least rate on the way, as a share of the mean over the samples: where the course all but rests, values do
+        /// not determine times.
         slowest_course: f64 = 0.05, moves "bounds of coordinates that turn";
         /// Fewest rows of a course's way.
         fewest_rows: usize = 4, moves "bounds of coordinates that turn";
-        /// Fewest rows that are taken beside a course's way.
+        /// Rows that are taken on either side of a course's way, if it has fewer itself.
         fewest_rows_beside: usize = 32, moves "bounds of coordinates that turn";
         /// Times within a piece of a course at which it has to rise.
         looks: usize = 4, moves "bounds of coordinates that turn";
@@ -48,7 +48,7 @@ tuning! {
         rows_beside: usize = 2, moves "bounds of coordinates that turn";
         /// The last step of the search for a time, as a share of the piece.
         close_time: f64 = 1e-7, moves "bounds of coordinates that turn";
-        /// Most steps of the search for the time at which a course is at a place.
+        /// Most steps of the search for the time at which a course has a value.
         steps_to_time: usize = 64, moves "bounds of coordinates that turn";
         /// Share of the rate over all higher degrees that the rate at the highest has at least.
         caution: f64 = 0.7, moves "errors of bounds";
@@ -69,10 +69,9 @@ tuning! {
         lost: f64 = 0.5, moves "errors of bounds";
         /// The whole error beyond this share of the output's span means that a bound does not follow the response.
         far_off: f64 = 0.25, moves "errors of bounds";
-        /// A surrogate's error below this share of the output's span is none to speak of, however narrow the band is
-        /// there.
+        /// A surrogate's error below this share of the output's span is negligible, however narrow the band is there.
         small_error: f64 = 1e-3, moves "errors of bounds";
-        /// What an error that is large beside the band may be wrong by.
+        /// Factor by which an error that is large relative to the band may be wrong.
         doubt: f64 = 2.0, moves "errors of bounds";
         /// A simulated value that lies outside of a band by less than this share of its own size does so by rounding.
         rounding_of_values: f64 = 1e-12, moves "errors of bounds";
@@ -82,16 +81,16 @@ tuning! {
         settled_end: f64 = 1e-10, moves "ranges, within their error";
         /// An end is also found when a step changes less than this share of a difference that does not matter.
         settled_of_least: f64 = 1.0 / 64.0, moves "ranges, within their error";
-        /// The best place is that of the peak where the quadratic's is no further from it.
+        /// The best point is the peak if the quadratic's peak is no further from it than this.
         stays: f64 = 1e-9, moves "ranges, within their error";
-        /// Neighbours that are nearer than this tell no peak from the best place.
+        /// Neighbours that are nearer than this do not distinguish a peak from the best point.
         finest: f64 = 1e-5, moves "ranges, within their error";
         /// Most steps of the search for an end of a range.
         steps_to_end: usize = 16, moves "ranges, within their error";
-        /// A lattice is too coarse along an axis where a value is further than this share of the range from what those
-        /// beside it tell: fewer than eight points to a wave.
+        /// A lattice is too coarse along an axis if a value differs by more than this share of the range from the
+        /// prediction of its neighbours: fewer than eight points to a wave.
         coarse: f64 = 0.03, moves "ranges, within their error";
-        /// What a check may find beyond the range, as a share of it, before the lattice is made finer.
+        /// Excess of a check over the range, as a share of it, above which the lattice is made finer.
         beyond_range: f64 = 1e-4, moves "ranges, within their error";
         /// Points of a lattice for each point of its check.
         lattice_points_a_check: usize = 4, moves "ranges, within their error";
@@ -106,24 +105,24 @@ tuning! {
         left_candidate: f64 = 1e-5, moves "ranges, within their error";
         /// Most points of a lattice, by the number of parameters.
         lattice_points: [usize; 3] = [4097, 16_641, 17_576], moves "ranges, within their error";
-        /// Points of lattices that are kept for further functions, at most.
+        /// Most points of lattices that are stored for further functions.
         kept_points: usize = 1 << 18, moves "time and memory";
         /// Most terms of a polynomial that is fitted to values and derivatives: the work grows with their cube.
         most_terms: usize = 1000, moves "surrogates of many parameters";
-        /// Equations for each term, at least: with two, what the terms lack went into products by tens of their size.
+        /// Equations for each term, at least: with two, the missing terms went into products by tens of their size.
         equations_a_term: usize = 4, moves "surrogates of many parameters";
-        /// Weight of a derivative beside that of a value: terms of second degree have derivatives of at most 4.
+        /// Weight of a derivative relative to that of a value: terms of second degree have derivatives of at most 4.
         weight_of_derivative: f64 = 0.5, moves "surrogates of many parameters";
         /// Added to the diagonal of the normal equations, as a share of its largest entry: terms that samples do not
-        /// tell apart share the response.
+        /// distinguish share the response.
         ridge: f64 = 1e-10, moves "surrogates of many parameters";
         /// Most sweeps over the axes in a search for a local maximum.
         sweeps: usize = 30, moves "surrogates of many parameters";
         /// Rows of the polynomial that gives values between rows.
         rows_of_interpolation: usize = 6, moves "values between rows, and their errors";
-        /// Rows of the coarser polynomial that tells its error.
+        /// Rows of the coarser polynomial that gives its error.
         rows_of_coarser: usize = 4, moves "values between rows, and their errors";
-        /// Rows of the polynomials on either side of a time, which differ beside an impact.
+        /// Rows of the polynomials on either side of a time, which differ next to an impact.
         rows_of_side: usize = 3, moves "fits of motions that switch";
         /// Nearer than this share of a row's distance is in the row.
         in_row: f64 = 1e-9, moves "values between rows, and their errors";
@@ -135,7 +134,7 @@ tuning! {
         most_leverage: f64 = 1.0 - 1e-9, moves "fits, within rounding";
         /// Highest level of nested nodes, which is a degree.
         max_level: u8 = 128, moves "which degrees sparse grids can have";
-        /// What a violated limit costs, in multiples of the goals' change over the box.
+        /// Cost of a violated limit, in multiples of the goals' change over the box.
         penalty: f64 = 1e4, moves "nominal values that are found";
         /// Pivots by the largest coefficient, for each row and column; those after them are by Bland's rule, which
         /// never circles.
@@ -146,7 +145,7 @@ tuning! {
         rounding_of_coefficients: f64 = 1e-11, moves "nominal values that are found";
         /// Orders below this are not that of the scheme at all.
         least_order: f64 = 1.5, moves "errors of time steps";
-        /// Below this order nothing converges, and the difference of two steps tells nothing of their error.
+        /// Below this order nothing converges, and the difference of two steps does not show their error.
         no_order: f64 = 0.25, moves "errors of time steps";
         /// Factor on the largest difference, where the order is not that of the scheme.
         of_differences: f64 = 1.5, moves "errors of time steps";
@@ -156,17 +155,17 @@ tuning! {
         further: f64 = 2.0, moves "ranges, within their error";
         /// Largest distance of neighbours that look beyond a peak, in ξ.
         furthest: f64 = 0.5, moves "ranges, within their error";
-        /// Most axes for which a peak is looked for on all faces of the box.
+        /// Most axes for which a peak is searched for on all faces of the box.
         most_faces: usize = 3, moves "ranges, within their error";
         /// Most changes of faces for each axis in the search for a peak.
         changes_of_faces: usize = 8, moves "ranges, within their error";
-        /// What a direction that bends upwards is shifted by at first, as a share of the bends.
+        /// First shift of a direction that bends upwards, as a share of the bends.
         shift: f64 = 1e-3, moves "ranges, within their error";
-        /// What a step gains less than, as a share of all gain, is none.
+        /// A step that gains less than this share of all gain gains nothing.
         settled_gain: f64 = 1e-12, moves "ranges, within their error";
         /// Intervals of the grid on which a polynomial is ranged, for each degree.
         density: usize = 16, moves "tight ranges of polynomials, within their error";
-        /// Fewest intervals for one, two and three parameters: what makes the margins of low degrees small too, as far
+        /// Fewest intervals for one, two and three parameters: they make the margins of low degrees small too, as far
         /// as it costs little. For more parameters there is no grid.
         min_intervals: [usize; 3] = [512, 128, 64], moves "tight ranges of polynomials, within their error";
         /// Most points of a grid: three parameters of degree 6.
@@ -179,7 +178,7 @@ tuning! {
         few_axes: usize = 3, moves "validation samples";
         /// Corners that are simulated as validation samples, of more axes.
         most_corners: usize = 16, moves "validation samples";
-        /// Points inside the box at which a surrogate is held against simulations that it was not made from.
+        /// Points inside the box at which a surrogate is compared with simulations that it was not made from.
         held_out: usize = 8, moves "validation samples";
         /// Most samples that are simulated at once.
         largest_shard: usize = 16384, moves "memory of scans";
@@ -187,11 +186,11 @@ tuning! {
         least_shard: usize = 2048, moves "memory of scans";
         /// Points at which functions are tried to be sums of functions of fewer parameters.
         tried_points: usize = 4, moves "which parameters act together";
-        /// A difference below this share of the values' range is none, rounding aside.
+        /// A difference below this share of the values' range counts as zero, rounding aside.
         no_difference: f64 = 1e-10, moves "which parameters act together";
         /// Rounding of a difference, as a share of the largest value.
         rounding_of_difference: f64 = 256.0 * f64::EPSILON, moves "which parameters act together";
-        /// Lower degrees along an axis are too few to tell how fast coefficients fall.
+        /// Lower degrees along an axis are too few to show how fast coefficients fall.
         least_degree: usize = 6, moves "which degrees tell how fast coefficients fall";
         /// Shares of a sum that is one may round to more.
         rounding_of_shares: f64 = 1e-9, moves "which indices a grid has, within rounding";
@@ -204,10 +203,10 @@ tuning! {
         /// Most coefficients of the tensor in which the tight range is sought; beyond, the range is taken term by
         /// term, and how much too wide it is is unknown.
         max_tensor: usize = 1 << 16, moves "tight ranges of Taylor polynomials";
-        /// Rows before and after the one that is looked at.
+        /// Rows before and after the examined one.
         rows_of_shift: usize = 4, moves "errors of time steps of oscillations";
-        /// Variance of the velocity over the rows beside one, relative to its mean square, from which on a shift in
-        /// time can be told from an offset.
+        /// Variance of the velocity over the rows near one, relative to its mean square, from which on a shift in time
+        /// can be distinguished from an offset.
         turns: f64 = 0.25, moves "errors of time steps of oscillations";
     }
 }

@@ -69,7 +69,7 @@ fn the_best_of_many_waves_is_found() {
     assert!(found.range.upper >= truth && found.range.upper < truth + 1e-4, "{found:?}, {truth}");
 }
 
-/// Of equal crests it does not matter which one is refined.
+/// It does not matter which one of equal crests is refined.
 #[test]
 fn every_crest_is_climbed_to_its_top() {
     for shift in [0.0, 0.013, 0.1, 0.37, 0.71] {
@@ -84,7 +84,7 @@ fn every_crest_is_climbed_to_its_top() {
 #[test]
 fn rounding_is_not_looked_for() {
     let seen = std::cell::Cell::new(0);
-    // Noise of some units of rounding; beside it a function that is not known better than to a thousandth of its size.
+    // Noise of some units of rounding, and a function that is not known better than to a thousandth of its size.
     let noise = |xi: f64| (1e7 * xi).sin();
     let evaluate = |points: &[Vec<f64>]| {
         seen.set(seen.get() + points.len());

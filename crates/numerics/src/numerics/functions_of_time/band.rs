@@ -1,6 +1,6 @@
 //! Sines of a band of frequencies, and their mixtures with amplitudes that add up to 1 at most.
 //!
-//! Of functions that are straight between values vₖ at the ends of cells the functional is Σ wₖ vₖ. Its largest value
+//! For functions that are straight between values vₖ at the ends of cells the functional is Σ wₖ vₖ. Its largest value
 //! over the mixtures is that of one sine, max |Σ wₖ exp(iωtₖ)| over the band, since a linear functional of a convex set
 //! is largest at an extreme point of it.
 

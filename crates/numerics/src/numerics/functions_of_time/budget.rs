@@ -56,7 +56,7 @@ pub fn with_energy(energy: f64, bounded: bool, ends: &[f64], functional: &[Cell]
     let square = |cell: usize| density[cell] * density[cell] * lengths[cell];
     let mut rests: Vec<f64> = order.iter().map(|&cell| square(cell)).collect();
     (1..rests.len()).rev().for_each(|number| rests[number - 1] += rests[number]);
-    // The strongest cells are at their limit, as many as have to be.
+    // The strongest cells are at their limit, as many as necessary.
     let (mut spent, mut factor) = (0.0, f64::INFINITY);
     for (&cell, rest) in order.iter().zip(rests) {
         let own = ((energy - spent) / rest).sqrt();

@@ -41,7 +41,7 @@ pub enum FunctionClass {
     Moving {
         /// Middle and reach at the beginning, and at the end of each cell. They move no faster than `rate`.
         limits: Arc<[[f64; 2]]>,
-        /// Of x, by s.
+        /// Largest |ẋ|, in the unit of x per s.
         rate: f64,
     },
     /// |u| ≤ 1, with a mean over the whole time between these.

@@ -1,6 +1,6 @@
 //! Functions with a bounded rate from 0 on, and those between limits with a bounded rate.
 //!
-//! Of the latter, values u₀ … u_N at the ends of cells form a chain with |uₖ − uₖ₋₁| ≤ ρ dₖ, whose best is found by
+//! For the latter, values u₀ … u_N at the ends of cells form a chain with |uₖ − uₖ₋₁| ≤ ρ dₖ, whose best is found by
 //! dynamic programming (Bellman's principle). The best value of the first cells as a function of uₖ is concave and
 //! piecewise linear: its breakpoints move apart by ρ dₖ, a linear term moves some of them over the maximum, and limits
 //! cut off those beyond; each a few times in all.
@@ -124,7 +124,7 @@ impl Limits for Arc<[[f64; 2]]> {
 
 /// Those of cells in pairs from the end.
 pub struct EveryOther<'l, L> {
-    /// Of all cells.
+    /// Limits of all cells.
     pub limits: &'l L,
     /// Number of cells, 0 or 1, that are alone at the beginning.
     pub alone: usize,

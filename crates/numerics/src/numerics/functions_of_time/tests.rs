@@ -39,7 +39,7 @@ fn chains_of_values_are_the_best_of_all() {
     for seed in 0..12 {
         let ends = [0.1, 0.2, 0.35, 0.5, 0.6, 0.8, 1.0];
         let functional = kernel(ends.len(), seed);
-        // Steps of the grid are divisors of what a cell allows, so that the grid holds a best chain.
+        // Steps of the grid are divisors of the change that a cell allows, so that the grid contains a best chain.
         let Worst { value: best, function, .. } = FunctionClass::BoundedRate(4.0).worst(&ends, &functional);
         let expected = tried(4.0, |_| [-1.0, 1.0], &ends, &functional, 101);
         assert!((best - expected).abs() < 1e-9, "{best}, not {expected}, of {seed}");
@@ -257,7 +257,7 @@ fn the_worst_of_a_band_is_a_sine_at_its_peak() {
     for (cell, [level, slope]) in function.iter().enumerate() {
         assert!((level + slope * ends[cell]).abs() <= 1.0 + 1e-12);
     }
-    // A band beside the peak has its maximum at the nearer end.
+    // A band next to the peak has its maximum at the nearer end.
     let beside = band(7.5 / std::f64::consts::TAU, 7.6 / std::f64::consts::TAU).worst(&ends, &functional).value;
     assert!((beside - size(7.5).max(size(7.6))).abs() < 1e-3 && beside < best, "{beside}");
     // One frequency.

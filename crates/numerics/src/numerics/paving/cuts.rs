@@ -19,7 +19,7 @@ impl Cut {
         Self { normal: vec![0.0; k], inner: -1.0, outer: 1.0 }
     }
 
-    /// Of a box with quantities that are not decided: of one with one such end of one interval.
+    /// Cut of a box in which one end of one quantity's interval is undecided; of any other box nothing is known.
     pub fn of(part: &PavingBox, shape: &Shape, tubes: &Tubes) -> Self {
         let k = shape.dimension();
         let &[row] = part.rows.as_slice() else { return Self::none(k) };

@@ -24,7 +24,7 @@ pub struct Tubes {
     pub coefficients: Vec<f64>,
     /// For each quantity the interval outside of which a value is impossible.
     pub outer: Vec<[f64; 2]>,
-    /// For each quantity the interval within which a value is certainly possible; empty where there is none.
+    /// For each quantity the interval within which a value is certainly possible; empty if there is no such value.
     pub inner: Vec<[f64; 2]>,
     /// For each quantity the unit in which an excess is measured.
     pub scales: Vec<f64>,

@@ -98,7 +98,7 @@ impl Climb {
         self.best = self.last.iter().fold(self.best, better);
     }
 
-    /// Moves to the best point, and sees whether to go on.
+    /// Moves to the best point, and decides whether to go on.
     pub(super) fn settle(&mut self, seen: &Evaluations) {
         self.keep_best(seen);
         let value = seen.value(self.goal, self.best);

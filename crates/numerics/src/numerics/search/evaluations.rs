@@ -1,4 +1,4 @@
-//! All values that a search has seen, and what follows from them.
+//! All values that a search has seen, and results from them.
 
 use std::collections::hash_map::Entry;
 
@@ -19,12 +19,12 @@ pub(super) struct Goal {
 #[derive(Default)]
 pub(super) struct Evaluations {
     pub(super) points: Vec<Vec<f64>>,
-    /// Of each function, in the order of the points.
+    /// Values of each function, in the order of the points.
     pub(super) values: Vec<Vec<f64>>,
     pub(super) indices: FxHashMap<Vec<u64>, usize>,
 }
 
-/// What tells points apart.
+/// Key of a point: the bits of its coordinates.
 pub(super) fn bits(point: &[f64]) -> Vec<u64> {
     point.iter().map(|xi| (xi + 0.0).to_bits()).collect() // −0 is 0
 }
@@ -58,7 +58,7 @@ impl Evaluations {
         Ok(indices)
     }
 
-    /// What a goal wants to be large; NaN is the least of all.
+    /// Value that a goal maximises; NaN is the least of all.
     pub(super) fn value(&self, goal: Goal, index: usize) -> f64 {
         let value = goal.sign * self.values[goal.output][index];
         if value.is_nan() { f64::NEG_INFINITY } else { value }
@@ -70,7 +70,7 @@ impl Evaluations {
         (upper - lower).max(0.0)
     }
 
-    /// Where to climb from: a neighbour's place, and the best points that are apart from it and from each other.
+    /// Points to climb from: a neighbour's extreme, and the best points that are apart from it and from each other.
     pub(super) fn starts(&self, goal: Goal, neighbour: Option<usize>) -> Vec<usize> {
         let mut order: Vec<usize> = (0..self.points.len()).collect();
         order.sort_by(|&a, &b| self.value(goal, b).total_cmp(&self.value(goal, a)));
@@ -85,7 +85,7 @@ impl Evaluations {
         starts
     }
 
-    /// Adds places that are apart from all before them, up to `most`.
+    /// Adds points that are apart from all before them, up to `most`.
     fn spread(&self, indices: impl Iterator<Item = usize>, most: usize, chosen: &mut Vec<usize>) {
         for index in indices {
             let apart = |&other: &usize| {

@@ -2,11 +2,11 @@
 //! large, and nothing but values is known.
 //!
 //! All functions are evaluated at the same points, and every value counts for every function. A design that is the same
-//! each time (middle, middles of faces, corners by Walsh functions, a low-discrepancy sequence) and the places of a
-//! neighbouring problem's extremes give each function, above and below, its starts. A climb probes along every axis,
-//! where it stands on a face just inwards: by the parabola through three values, or the sign of a slope, each axis has
-//! its target. The climb moves to the best value on the way to all of them at once, and ends where that promises
-//! nothing. Probes of all climbs are one batch.
+//! each time (middle, middles of faces, corners by Walsh functions, a low-discrepancy sequence) and the extremes of a
+//! neighbouring problem give each function, above and below, its starts. A climb probes along every axis, just inwards
+//! if it stands on a face: by the parabola through three values, or the sign of a slope, each axis has its target. The
+//! climb moves to the best value on the way to all of them at once, and ends where that promises nothing. Probes of all
+//! climbs are one batch.
 //!
 //! Ends found are attained. That nothing lies beyond it is not proven: of many local extremes, as of the sine of a sum
 //! that turns more than once, one close to the best may be taken for it.
@@ -62,7 +62,8 @@ impl ExtremeSearch {
 
     /// Extremes of `outputs` functions. `evaluate` is given points and writes the values there, those of the first
     /// function at all points, then of the second, …; it is called with many points a few times. `neighbours` are the
-    /// extremes of similar functions, as many, or none; `places` are where some function is known to be large or small.
+    /// extremes of similar functions, one for each, or none; `places` are points where some function is known to be
+    /// large or small.
     ///
     /// # Errors
     /// The first of `evaluate`.
@@ -92,7 +93,7 @@ impl ExtremeSearch {
                 starts.into_iter().map(move |at| Climb::new(goal, at, self.dimension))
             })
             .collect();
-        // Where climbs stood, and what a neighbour knew of.
+        // Points where climbs stood, and further local extremes of a neighbour.
         let mut ends: Vec<(Goal, usize)> = goals()
             .flat_map(|goal| {
                 let others = neighbours.get(goal.output).into_iter().flat_map(|known| &known.others);

@@ -1,4 +1,4 @@
-//! What a search finds of functions whose extremes are known.
+//! Searches for the extremes of functions whose extremes are known.
 
 use super::*;
 
@@ -128,7 +128,7 @@ fn neighbours_save_points() {
     }
 }
 
-/// Coordinate search from many random points, with as many evaluations as it takes.
+/// Coordinate search from many random points, with any number of evaluations.
 fn thorough(k: usize, functions: &[Function]) -> Vec<Range> {
     let mut state = 12345_u64;
     let mut random = move || {

@@ -19,7 +19,7 @@ tuning! {
         starts_apart: f64 = 0.5, moves "ranges of functions of many parameters";
         /// With a neighbour's extremes, other starts are tried that are within this share of the range of the best.
         promising: f64 = 0.05, moves "ranges of functions of many parameters";
-        /// Local extremes, beside the best, whose places a neighbour starts from.
+        /// Local extremes, in addition to the best, from which a neighbour starts.
         others: usize = 4, moves "ranges of functions of many parameters";
         /// Points of the low-discrepancy sequence for each parameter, without and with a neighbour's extremes.
         scattered: (usize, usize) = (32, 2), moves "ranges of functions of many parameters";

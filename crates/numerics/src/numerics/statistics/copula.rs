@@ -4,7 +4,7 @@
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct NotPositive;
 
-/// What makes independent normal scores correlated; nothing where they are not.
+/// Correlates independent normal scores; empty if the parameters are independent.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Copula {
     /// Number of parameters, and the rows of the Cholesky factor; empty where all are independent.
@@ -12,10 +12,10 @@ pub struct Copula {
 }
 
 impl Copula {
-    /// Of a symmetric matrix with ones on its diagonal.
+    /// Copula of a symmetric matrix with ones on its diagonal.
     ///
     /// # Errors
-    /// Where it is not positive definite.
+    /// If it is not positive definite.
     pub fn new(matrix: &[Vec<f64>]) -> Result<Self, NotPositive> {
         let k = matrix.len();
         let independent = (0..k).all(|i| (0..i).all(|j| matrix[i][j] == 0.0));

@@ -22,7 +22,7 @@ pub enum Distribution {
         /// Standard deviation.
         sigma: f64,
     },
-    /// A normal law of which only what lies between the ends occurs.
+    /// A normal law, truncated to the values between the ends.
     TruncatedNormal {
         /// Mean of the whole law.
         mean: f64,
@@ -39,9 +39,9 @@ pub enum Distribution {
         median: f64,
         /// Standard deviation of the whole law's logarithm.
         sigma: f64,
-        /// What lies below does not occur; zero where all does.
+        /// Smaller values do not occur; zero if all do.
         lower: f64,
-        /// What lies above does not occur; infinite where all does.
+        /// Larger values do not occur; infinite if all do.
         upper: f64,
     },
     /// Its density rises to the mode and falls from it, linearly.

@@ -36,11 +36,11 @@ pub fn share_interval(seen: usize, of: usize) -> [f64; 2] {
     [lower, upper]
 }
 
-/// What replicates of one quantity's samples say.
+/// Statistics of one quantity from replicates of its samples.
 #[derive(Clone, Debug, Default)]
 pub struct Replicates {
     means: Vec<f64>,
-    /// About each replicate's own mean.
+    /// Variances, each about its replicate's own mean.
     variances: Vec<f64>,
     /// By quantile, replicate by replicate.
     quantiles: Vec<Vec<f64>>,
@@ -79,8 +79,8 @@ impl Replicates {
         Estimate::of(&self.means)
     }
 
-    /// Standard deviation, about the mean of all replicates: points of a lattice know it far better than as many
-    /// random ones, whose variance about their own mean is divided by one less than their number.
+    /// Standard deviation, about the mean of all replicates: points of a lattice know it far better than the same
+    /// number of random ones, whose variance about their own mean is divided by one less than their number.
     pub fn deviation(&self) -> Estimate {
         let mean = self.mean().value;
         let own =
@@ -174,8 +174,8 @@ mod tests {
         }
     }
 
-    /// The mean of lattice points is known far better than that of as many random ones: nothing is to be divided by
-    /// one less than their number, as if it were not.
+    /// The mean of lattice points is known far better than that of the same number of random ones: nothing is to be
+    /// divided by one less than their number, as if it were not.
     #[test]
     fn deviations_of_evenly_spread_points_lie_within_their_confidence() {
         let jump: fn(&[f64]) -> f64 = |p| if p[0] + 0.6 * p[1] > 0.8 { 1.0 } else { -1.0 };

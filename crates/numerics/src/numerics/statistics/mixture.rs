@@ -1,5 +1,5 @@
-//! Normal laws about places where something fails, beside the law itself: points of the mixture, each with the ratio of
-//! the densities.
+//! Mixture of normal laws about places where something fails, and of the law itself: points of the mixture, each with
+//! the ratio of the densities.
 
 use super::points::replicate;
 use super::special::normal_quantile;
@@ -40,7 +40,7 @@ impl Mixture {
         (points, weights)
     }
 
-    /// A point from evenly spread numbers: the first says about which place.
+    /// A point from evenly spread numbers: the first selects the place.
     fn drawn(&self, numbers: &[f64]) -> Vec<f64> {
         let about = (numbers[0] - TUNING.defensive) / (1.0 - TUNING.defensive) * self.places.len() as f64;
         let place =

@@ -1,4 +1,4 @@
-//! Laws of random parameters, points that are spread evenly by them, and what samples of a quantity say of it.
+//! Laws of random parameters, points that are spread evenly by them, and estimates from samples of a quantity.
 
 mod beta;
 mod copula;

@@ -53,7 +53,7 @@ impl SampleQuantile {
         Self { share, ranks: ranks(share, count, outside) }
     }
 
-    /// Of these samples; NaN where so few have no interval, or one is NaN.
+    /// Estimate from these samples; NaN if they are too few for an interval, or if one is NaN.
     pub fn of(&self, sorted: &[f64]) -> Estimate {
         let n = sorted.len();
         let unknown = Estimate { value: f64::NAN, sampling: f64::NAN };

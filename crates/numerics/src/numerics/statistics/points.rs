@@ -1,5 +1,5 @@
-//! Points spread evenly over the unit cube: a lattice, shifted at random a few times, so that the replicates tell how
-//! far a mean is off.
+//! Points spread evenly over the unit cube: a lattice, shifted at random a few times, so that the replicates give the
+//! error of a mean.
 
 use super::tuning::TUNING;
 

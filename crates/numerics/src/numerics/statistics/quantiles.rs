@@ -6,7 +6,7 @@ use super::distribution::{Distribution, table_mass, table_quantile};
 use super::special::{normal_cdf, normal_quantile};
 use super::tuning::TUNING;
 
-/// What gives a law's values.
+/// Quantiles of a law.
 #[derive(Clone, Debug)]
 pub struct Quantiles {
     distribution: Distribution,
@@ -24,7 +24,7 @@ enum By {
 }
 
 impl Quantiles {
-    /// Of a law.
+    /// Prepares the quantiles of a law.
     pub fn new(distribution: &Distribution) -> Self {
         let by = match distribution {
             Distribution::Beta { .. } => {

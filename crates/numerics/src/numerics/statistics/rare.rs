@@ -1,6 +1,6 @@
 //! Shares that are so small that few samples see them: by importance sampling about the likeliest points that fail, by
-//! directional sampling, or by subset simulation, whichever says most; each is held against the points that subset
-//! simulation finds to fail.
+//! directional sampling, or by subset simulation, whichever is most accurate; each is compared with the points that
+//! subset simulation finds to fail.
 
 use super::estimates::{Estimate, STUDENT};
 use super::mixture::{Mixture, distance, value_and_slopes};
@@ -10,7 +10,7 @@ use super::subset::{Subset, subset};
 use super::tuning::TUNING;
 use crate::numerics::dot;
 
-/// By what a share was found.
+/// Method by which a share was found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RareMethod {
     /// Samples about the likeliest points that fail.
@@ -37,8 +37,8 @@ impl RareMethod {
 pub struct RareShare {
     /// The share.
     pub value: f64,
-    /// Its 95 % confidence interval, from what fails if errors help to what fails if they harm; unknown (NaN) where
-    /// methods contradict one another.
+    /// Its 95 % confidence interval, from the failures if errors help to those if errors harm; unknown (NaN) if methods
+    /// contradict one another.
     pub interval: [f64; 2],
     /// The method that found it.
     pub method: RareMethod,
@@ -49,9 +49,9 @@ pub struct RareShare {
 /// Estimates for slacks that errors help, as they are, and that errors harm.
 type Estimates = [Estimate; 3];
 
-/// The share with a negative slack, where something is found to fail. `slacks` has the values of points in independent
-/// normal scores, with errors that help, none, and errors that harm; `starts` are points from which places that fail
-/// are looked for.
+/// The share with a negative slack; `None` if nothing is found to fail. `slacks` has the values of points in
+/// independent normal scores, with errors that help, none, and errors that harm; `starts` are points from which the
+/// search for places that fail begins.
 pub fn rare_share(starts: &[Vec<f64>], slacks: &Slacks) -> Option<RareShare> {
     let k = starts.first()?.len();
     let count = std::cell::Cell::new(0);
@@ -64,7 +64,7 @@ pub fn rare_share(starts: &[Vec<f64>], slacks: &Slacks) -> Option<RareShare> {
     let mut mixture = Mixture::default();
     starts.iter().filter_map(|start| likeliest(start, &slack)).for_each(|place| mixture.add(place, TUNING.places));
     let Some(seen) = seen else {
-        // Nothing to hold it against: farther out than chains come.
+        // Nothing to compare it with: farther out than chains come.
         let found = (!mixture.is_plain()).then(|| by_importance(&mixture, k, &counted))?;
         return Some(shared(found, RareMethod::Importance, count.get()));
     };
@@ -80,7 +80,7 @@ pub fn rare_share(starts: &[Vec<f64>], slacks: &Slacks) -> Option<RareShare> {
         best.consider(RareMethod::Importance, foreseen(found, of_weights(&mixture, &seen, level.value)));
     }
     if !best.is_close() {
-        // What errors change is as with the other estimates.
+        // Errors change the share in the same ratio as with the other estimates.
         let base = best.1[1].value;
         let change = best.1.map(|other| if base > 0.0 { other.value / base } else { f64::NAN });
         let of = |change: f64| Estimate { value: change * level.value, sampling: change * level.sampling };
@@ -100,7 +100,7 @@ fn shared([better, own, worse]: Estimates, method: RareMethod, samples: usize) -
     RareShare { value: own.value, interval, method, samples }
 }
 
-/// The estimates that say most so far.
+/// The estimates with the smallest relative error so far.
 struct Best(RareMethod, Estimates);
 
 impl Best {
@@ -110,7 +110,7 @@ impl Best {
 
     fn consider(&mut self, method: RareMethod, found: Estimates) {
         let width = |found: &Estimates| found[1].sampling / found[1].value;
-        // Of nothing nothing is known.
+        // An estimate of zero has no relative error (NaN), and any other replaces it.
         if width(&found) < width(&self.1) || width(&self.1).is_nan() {
             *self = Self(method, found);
         }
@@ -122,7 +122,7 @@ fn estimates(of_replicate: &[[f64; 3]]) -> Estimates {
     [0, 1, 2].map(|which| Estimate::of(&of_replicate.iter().map(|shares| shares[which]).collect::<Vec<_>>()))
 }
 
-/// By samples of a mixture of normal laws about places that fail and of the law itself.
+/// Estimates from samples of a mixture of normal laws about places that fail and of the law itself.
 fn by_importance(mixture: &Mixture, k: usize, slacks: &Slacks) -> Estimates {
     let of_replicate = |number: usize| {
         let (points, weights) = mixture.replicate(number, k, TUNING.points);
@@ -137,9 +137,9 @@ fn by_importance(mixture: &Mixture, k: usize, slacks: &Slacks) -> Estimates {
     estimates(&(0..REPLICATES).map(of_replicate).collect::<Vec<_>>())
 }
 
-/// The deviation about the share, relative to it, that points which fail foresee, where some of them are left out: such
-/// samples do not say so themselves. The mean square of all weights is the share times the mean weight of what fails.
-/// Where none is left out, evenly spread points do better, and their replicates say how much.
+/// The deviation about the share, relative to it, that failing points foresee if the mixture does not cover some of
+/// them: such samples do not show it themselves. The mean square of all weights is the share times the mean weight of
+/// failing points. If all are covered, evenly spread points do better, and their replicates give the error.
 fn of_weights(mixture: &Mixture, seen: &Subset, share: f64) -> f64 {
     let weights: Vec<f64> = seen.failing.iter().map(|point| mixture.weight(point)).collect();
     if weights.iter().all(|weight| *weight < TUNING.uncovered * share) {
@@ -174,7 +174,7 @@ fn by_directions(k: usize, seen: &Subset, share: f64, slacks: &Slacks) -> Estima
     foreseen(found, (mean / share - 1.0).max(0.0).sqrt() / ((REPLICATES * TUNING.directions) as f64).sqrt())
 }
 
-/// Adds places until none of the points that fail is left out. Returns whether one was added.
+/// Adds places until the mixture covers all points that fail. Returns whether one was added.
 fn cover(mixture: &mut Mixture, seen: &Subset, share: f64, slack: &dyn Fn(&[Vec<f64>]) -> Vec<f64>) -> bool {
     let before = mixture.count();
     let mut skipped = vec![false; seen.failing.len()];
@@ -193,7 +193,7 @@ fn cover(mixture: &mut Mixture, seen: &Subset, share: f64, slack: &dyn Fn(&[Vec<
     mixture.count() > before
 }
 
-/// The point nearest to the middle, as far as can be seen from the start, at which nothing is left.
+/// The point nearest to the middle, as far as can be seen from the start, at which the slack is zero.
 fn likeliest(start: &[f64], slack: &dyn Fn(&[Vec<f64>]) -> Vec<f64>) -> Option<Vec<f64>> {
     let mut at = start.to_vec();
     let scale = slack(&[vec![0.0; at.len()]])[0].abs();
@@ -229,7 +229,7 @@ mod tests {
         rare_share(starts, &|points: &[Vec<f64>]| points.iter().map(|z| [slack(z); 3]).collect())
     }
 
-    /// Of points of the law itself, those with the least slack.
+    /// Points with the least slack among random points of the law itself.
     fn starts(k: usize, slack: &dyn Fn(&[f64]) -> f64) -> Vec<Vec<f64>> {
         let mut normals = Normals::new(77);
         let mut points: Vec<Vec<f64>> = (0..4000).map(|_| normals.draw(k)).collect();
@@ -305,7 +305,7 @@ mod tests {
         }
     }
 
-    /// Of `count` draws, how many intervals hold the truth, and how many are stated.
+    /// Number of intervals that contain the truth, and of those that are stated, among `count` draws.
     fn held(count: usize) -> (usize, usize) {
         let (mut held, mut stated) = (0, 0);
         for number in 0..count {

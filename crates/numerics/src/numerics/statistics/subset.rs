@@ -1,11 +1,10 @@
-//! Subset simulation: the way to what fails rarely, level by level. It sees failing sets of any shape, in many
-//! dimensions.
+//! Subset simulation: reaches rare failures level by level. It sees failing sets of any shape, in many dimensions.
 
 use super::normals::Normals;
 use super::points::REPLICATES;
 use super::tuning::TUNING;
 
-/// What subset simulation says.
+/// Result of subset simulation.
 #[derive(Clone, Debug)]
 pub struct Subset {
     /// The share that fails, by replicate.
@@ -16,7 +15,7 @@ pub struct Subset {
 
 /// The share of the normal law in k dimensions with a negative slack (S.-K. Au & J. L. Beck, Probabilistic Engineering
 /// Mechanics 16 (2001) 263), by chains of I. Papaioannou et al., Probabilistic Engineering Mechanics 41 (2015) 89.
-/// `None` where nothing is found to fail.
+/// `None` if nothing is found to fail.
 pub fn subset(k: usize, slack: &dyn Fn(&[Vec<f64>]) -> Vec<f64>) -> Option<Subset> {
     let mut found = Subset { shares: Vec::with_capacity(REPLICATES), failing: Vec::new() };
     for number in 0..REPLICATES {

@@ -15,7 +15,7 @@ tuning! {
         longest_step: f64 = 1.5, moves "shares of failing products";
         /// Places nearer to each other than this are one.
         places_apart: f64 = 0.7, moves "shares of failing products";
-        /// Random shifts of a lattice of samples: the replicates tell sampling errors.
+        /// Random shifts of a lattice of samples: the replicates give sampling errors.
         replicates: usize = 16, moves "statistics, and their sampling errors";
         /// Most samples of a replicate whose quantiles are those of all replicates together.
         pooled: usize = 1 << 12, moves "quantiles of few samples, and their sampling errors";
@@ -42,15 +42,15 @@ tuning! {
         /// Subset simulation's chains depend on each other, and its replicates are not normal: so much wider is its
         /// interval.
         dependent_chains: f64 = 1.6, moves "rare shares of failing products";
-        /// A point that fails is left out where its weight exceeds this multiple of the share.
+        /// The mixture does not cover a failing point whose weight exceeds this multiple of the share.
         uncovered: f64 = 30.0, moves "rare shares of failing products";
         /// Rays find where the slack changes its sign to so much of the share.
         along_ray: f64 = 1e-3, moves "rare shares of failing products";
         /// Largest distance of two methods' shares, as a multiple of the sum of their intervals' half widths.
         intervals_apart: f64 = 2.0, moves "rare shares of failing products";
-        /// Largest distance at which the likeliest point that fails is looked for, in normal scores.
+        /// Largest distance at which the likeliest point that fails is searched for, in normal scores.
         farthest_likeliest: f64 = 8.0, moves "rare shares of failing products";
-        /// Steps along a ray in which changes of sign are looked for.
+        /// Steps along a ray in which changes of sign are searched for.
         steps_of_ray: usize = 20, moves "rare shares of failing products";
         /// Steps to each change of sign along a ray.
         secants: usize = 5, moves "rare shares of failing products";
