@@ -1,4 +1,4 @@
-//! Ends that were followed along gradients as bounds, in place of a surrogate.
+//! Ends that were followed along gradients as bounds, instead of a surrogate.
 
 use super::adaptive::Goal;
 use super::tuning::TUNING;
@@ -24,7 +24,7 @@ pub(super) struct FollowedWithin<'f> {
 }
 
 impl<'f> FollowedWithin<'f> {
-    /// Of the outputs of an ensemble.
+    /// Compares the followed ends of an ensemble's outputs with a goal.
     pub fn new(followed: &'f FollowedEnds, goal: &Goal, ensemble: &dyn Ensemble) -> Self {
         let outputs = ensemble.outputs();
         let counts = |index: usize| index / outputs < goal.outputs[index % outputs].rows;
@@ -37,7 +37,7 @@ impl<'f> FollowedWithin<'f> {
         Self { followed, parameters: ensemble.domain().dimension(), outputs, is_within, all }
     }
 
-    /// Whether they are all bounds. A surrogate that is kept of the whole box is a grid if the parameters are few.
+    /// Whether they are all bounds. A stored surrogate of the whole box is a grid if the parameters are few.
     pub fn are_bounds(&self, keep: Keep) -> bool {
         let are_many = self.parameters > MOST_ON_GRIDS;
         let has_kept = match keep {
@@ -48,7 +48,7 @@ impl<'f> FollowedWithin<'f> {
         has_kept && (are_many || self.all)
     }
 
-    /// All of them as what a method finds. The simulations were counted where they were made.
+    /// All of them as the result of a method. The simulations were counted where they were made.
     pub fn bounds(&self) -> MethodResult {
         let count = self.followed.ends().len();
         let mut result = BandBuilder::new(self.outputs, count / self.outputs.max(1)).finish(0, Simulated::default());
@@ -56,7 +56,7 @@ impl<'f> FollowedWithin<'f> {
         MethodResult { kept: self.followed.surrogate().cloned(), ..result }
     }
 
-    /// Leaves a goal without outputs of which they are the bounds, unless a surrogate of the whole box is kept.
+    /// Removes from a goal outputs of which they are the bounds, unless a surrogate of the whole box is to be stored.
     pub fn leave(&self, goal: &mut Goal, keep: Keep) {
         if matches!(keep, Keep::WholeBox | Keep::Margins) {
             return;
@@ -67,8 +67,7 @@ impl<'f> FollowedWithin<'f> {
         }
     }
 
-    /// Replaces bounds by ends that meet the tolerance, or of which less is open. A surrogate that is kept has its own
-    /// errors.
+    /// Replaces bounds by ends that meet the tolerance or have a smaller error. A stored surrogate has its own errors.
     pub fn replace(&self, result: &mut MethodResult) {
         for (index, (found, is_within)) in self.followed.ends().iter().zip(&self.is_within).enumerate() {
             let (row, output) = (index / self.outputs, index % self.outputs);

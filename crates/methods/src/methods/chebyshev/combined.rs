@@ -1,8 +1,8 @@
-//! An ensemble over fewer parameters: where several act through one number alone, a line through the box from where it
-//! is least to where it is greatest has all that there is to see.
+//! An ensemble over fewer parameters: where several act through one number alone, a line through the box from the least
+//! to the greatest value of that number shows all of their effect.
 //!
 //! The number is continuous, so that along the line it takes every value that it has in the box, and each value of an
-//! output occurs there. Of eight parameters that a stiffness sees through their sum one remains, and a polynomial in it
+//! output occurs there. Eight parameters that a stiffness sees through their sum become one, and a polynomial in it
 //! costs a simulation a degree (decision 0148).
 
 use std::ops::Range as Rows;
@@ -81,7 +81,7 @@ impl<'e> Combined<'e> {
         self.of_box().xi(&self.embed(along))
     }
 
-    /// What holds along each line for each parameter of the box.
+    /// Values for each parameter of the box from those along each line.
     pub fn of_parameters<T: Copy + Default>(&self, of_lines: &[T]) -> Vec<T> {
         let mut all = vec![T::default(); self.of_box().dimension()];
         for (line, &own) in self.lines.iter().zip(of_lines) {

@@ -1,8 +1,8 @@
-//! How closely an adaptive surrogate is looked at.
+//! How closely an adaptive surrogate is examined.
 
 use super::sub_box::SubBox;
 
-/// Estimates besides ranges and the surrogate's errors.
+/// Estimates in addition to ranges and the surrogate's errors.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Detail {
     /// Nothing.

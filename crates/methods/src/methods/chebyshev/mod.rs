@@ -64,8 +64,8 @@ pub mod keys {
     grammar! {
         /// Chebyshev bounds.
         Chebyshev is "`chebyshev`" {
-            /// Degree, for all parameters or by parameter; by default 5, or as the tolerance asks for where there is
-            /// one, or more than three parameters.
+            /// Degree, for all parameters or by parameter; by default 5, but adaptive if there is a tolerance or more
+            /// than three parameters.
             order: Option<PerParameter>,
             /// Nodes, more than the degree; by default one more.
             nodes: Option<PerParameter>,
@@ -77,7 +77,7 @@ pub mod keys {
     }
 }
 
-/// What a Chebyshev surrogate expands.
+/// Quantities that a Chebyshev surrogate expands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Expand {
     /// The independent coordinates and their velocities; outputs follow from them.
@@ -121,7 +121,7 @@ impl Chebyshev {
     /// Degree where a model asks for none.
     pub const ORDER: usize = TUNING.order;
 
-    /// For a request without a degree: [`ORDER`](Self::ORDER), or adaptive where there is a tolerance or there are many
+    /// For a request without a degree: [`ORDER`](Self::ORDER), or adaptive if there is a tolerance or if there are many
     /// parameters.
     pub fn unspecified(k: usize, tolerance: Option<f64>) -> Self {
         if tolerance.is_some() || k > Self::FEW { Self::ADAPTIVE } else { Self::of_order(Self::ORDER, k) }

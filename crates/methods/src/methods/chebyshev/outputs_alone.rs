@@ -1,5 +1,5 @@
-//! An ensemble without coordinates: what cannot be composed is expanded itself, to a degree that a tolerance asks for
-//! all the same.
+//! An ensemble without coordinates: outputs that cannot be composed are expanded themselves, also to a degree that a
+//! tolerance asks for.
 
 use std::ops::Range as Rows;
 

@@ -40,7 +40,7 @@ pub(super) struct RangeSearch {
     separation: Separation,
     lattices: Lattices,
     climbs: Option<ExtremeSearch>,
-    /// What climbs are checked by.
+    /// Points at which the results of climbs are checked.
     checks: Vec<Vec<f64>>,
 }
 
@@ -178,7 +178,7 @@ impl RangeSearch {
 
 impl RangeSearch {
     /// Searches anew, over all parameters together, for the ranges of outputs that are no sums at the ends of these: a
-    /// kink that lies beside all points at which sums are tried.
+    /// kink may lie between all points at which sums are tried.
     fn hold_sums(&self, functions: &Functions, outputs: &[usize], sums: &mut [Extent], previous: &mut Previous) {
         let places: Vec<Vec<f64>> = sums.iter().flat_map(|sum| sum.places.iter().cloned()).collect();
         let values = (functions.evaluate)(outputs, &places);
@@ -232,13 +232,13 @@ fn climb(
     found
 }
 
-/// Climbs along a ridge end early: where they did, quadratics go on.
+/// Continues climbs by quadratics: along a ridge climbs end early.
 fn polish(extents: &mut [Extent], evaluate: impl Fn(&[Vec<f64>]) -> Vec<f64>) {
     let polished = extremes_from(extents, evaluate);
     extents.iter_mut().zip(polished).for_each(|(extent, polished)| extent.improve(polished));
 }
 
-/// What a search found, which it may have missed by its tolerance.
+/// Extent from the result of a search, which may miss the ends by its tolerance.
 pub(super) fn extent(found: Extremes) -> Extent {
     Extent::at(found.range, ExtremeSearch::TOLERANCE * found.range.width(), [found.lowest, found.highest])
 }
@@ -268,7 +268,7 @@ mod tests {
             evaluate: &evaluate,
         };
         let found = &search.range(&functions, &[values], &mut Previous::default())[0];
-        // ξ₁ + … + ξ₇ = −7 lets ξ₀ be 0.85 on the ridge, and beside it 1/80 more.
+        // ξ₁ + … + ξ₇ = −7 lets ξ₀ be 0.85 on the ridge, and next to it 1/80 more.
         let (upper, lower) = (0.85 + 1.0 / 160.0, -1.0 - 40.0 * 1.85 * 1.85);
         assert!((found.range.upper - upper).abs() < 1e-7 * (upper - lower), "{} of {upper}", found.range.upper);
         assert!((found.range.lower - lower).abs() < 1e-12, "{} of {lower}", found.range.lower);

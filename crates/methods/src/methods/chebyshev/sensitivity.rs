@@ -20,7 +20,7 @@ struct Fine {
     decomposition: SobolDecomposition,
     /// C_j of every degree j at the nominal value of each parameter.
     nominal: Vec<Vec<f64>>,
-    /// Of all parameters but one.
+    /// Basis of all parameters but one.
     without: SparseBasis,
     /// ξ of these on which their polynomials' ranges are found.
     lattice: Vec<Vec<f64>>,
@@ -123,8 +123,7 @@ impl<'a> SensitivityAnalysis<'a> {
     }
 
     /// Every output's width with one parameter at its nominal value, from the outputs' `coefficients`. For many
-    /// parameters, as far as the places of the extremes tell, which is all there is to know of an output that rises or
-    /// falls with each.
+    /// parameters it is estimated at the extremes, which suffices for an output that rises or falls with each.
     fn widths_without(&self, row: &impl Predicted, coefficients: &[f64], found: &[Extent], axis: usize) -> Vec<f64> {
         if let Some(fine) = &self.fine {
             return fine.widths_without(coefficients, axis);
@@ -214,8 +213,8 @@ impl Fine {
         largest - least
     }
 
-    /// The extreme beside the lattice's: along each axis a parabola through its neighbours, in the angle whose cosine ξ
-    /// is, in which they are equally far. At the ends of an axis the function is even in it.
+    /// The extreme next to the lattice's: along each axis a parabola through its neighbours, in the angle whose cosine
+    /// ξ is, in which they are equally far. At the ends of an axis the function is even in it.
     fn peak(&self, line: &[f64], index: usize, sign: f64) -> f64 {
         let points = TUNING.density_of_widths * (self.nominal[0].len() - 1) + 1;
         let mut peak = line[index];

@@ -1,4 +1,4 @@
-//! A box with its sparse grid: what its indices are expected to contribute, and when it is to be split.
+//! A box with its sparse grid: the expected surpluses of its indices, and when it is to be split.
 
 use std::borrow::Cow;
 
@@ -32,7 +32,7 @@ pub(super) struct SubBox<'r> {
     pub lines: usize,
     /// Hierarchical surplus of each index of the grid: the error of the surrogate before the index was added.
     pub surplus: Surpluses,
-    /// Of coordinates that turn, by coordinate; none, or one for each.
+    /// Courses of coordinates that turn, by coordinate; none, or one for each.
     pub courses: Vec<Option<Course>>,
     /// ξ of the validation samples,
     pub points: Cow<'r, [Vec<f64>]>,
@@ -44,7 +44,7 @@ pub(super) struct SubBox<'r> {
     pub challenged: bool,
     /// Largest error at those over the one that is allowed.
     pub error: f64,
-    /// Estimates of all rows, by row and output, and the rows that are kept, once nothing is to be added.
+    /// Estimates of all rows, by row and output, and the rows that are stored, once nothing is to be added.
     pub estimates: Option<(Vec<Estimate>, Vec<KeptRow>)>,
 }
 
@@ -129,8 +129,8 @@ impl SubBox<'_> {
     /// are believed to be the expected ones.
     ///
     /// Where no surplus is expected that matters, but the error is too large, indices are expected to be as large as
-    /// those two degrees lower: of a response without even or without odd terms every other surplus is zero, and what
-    /// a sparse set lacks is estimated so too (`numerics::truncation`).
+    /// those two degrees lower: a response without even or without odd terms has zero for every other surplus, and the
+    /// truncation of a sparse set is estimated so too (`numerics::truncation`).
     pub fn next(&self, share: f64, wanted: usize) -> Vec<Vec<Vec<u8>>> {
         let (mut grid, mut surplus) = (self.grid.clone(), self.surplus.clone());
         let mut generations: Vec<Vec<Vec<u8>>> = Vec::new();

@@ -11,9 +11,9 @@ tuning! {
         /// A combination's range is searched for as that of a polynomial of this degree, and more closely where that
         /// is too low.
         degree_of_combination: u8 = 8, moves "Chebyshev bounds of parameters that act through one number";
-        /// Share of a combination's range by which its values beside an end may exceed it.
+        /// Share of a combination's range by which its values near an end may exceed it.
         exceeded: f64 = 1e-6, moves "Chebyshev bounds of parameters that act through one number";
-        /// Distance in ξ at which a combination's values beside an end are looked at.
+        /// Distance in ξ from an end at which a combination's values are examined.
         beside_end: f64 = 1e-3, moves "Chebyshev bounds of parameters that act through one number";
         /// Halvings that find where a combination has a value, to the last bit.
         halvings_of_combination: usize = 60, moves "Chebyshev bounds of parameters that act through one number";
@@ -27,20 +27,20 @@ tuning! {
         few_parameters: usize = 3, moves "Chebyshev bounds";
         /// Degree where a model asks for none.
         order: usize = 5, moves "Chebyshev bounds";
-        /// Most parameters whose corners are looked at beside the samples.
+        /// Most parameters whose corners are examined in addition to the samples.
         most_corners: usize = 10, moves "Chebyshev bounds of outputs that are polynomials";
         /// Most parameters that act together for which ranges are found on a lattice.
         lattice_parameters: usize = 3, moves "Chebyshev bounds";
         /// Fewest intervals of the first lattice along an axis, by the number of its axes.
         least_intervals: [usize; 3] = [16, 8, 6], moves "Chebyshev bounds";
         /// Intervals for each degree of a function that is composed of polynomials, by the number of axes: it is
-        /// looked at more closely if it asks for it.
+        /// examined more closely if it asks for it.
         intervals_of_composed: [usize; 3] = [2, 2, 1], moves "Chebyshev bounds";
         /// Intervals for each degree of polynomials, by the number of axes.
         intervals_of_polynomial: [usize; 3] = [4, 4, 2], moves "Chebyshev bounds";
         /// Points for each parameter at which the result of climbs is checked.
         checks_of_climbs: usize = 16, moves "Chebyshev bounds";
-        /// What a check may find beyond the range, as a share of it, before the search begins anew.
+        /// Excess of a check over the range, as a share of it, above which the search begins anew.
         beyond_range: f64 = 1e-3, moves "Chebyshev bounds";
         /// A sum of functions may be off by this share of its range at the range's ends.
         sum_off: f64 = 1e-8, moves "Chebyshev bounds";
@@ -62,9 +62,9 @@ tuning! {
         highest_degrees: [u8; 3] = [128, 48, 24], moves "bounds within a tolerance";
         /// Highest degree in a parameter, of more parameters.
         highest_of_many: u8 = 16, moves "bounds within a tolerance";
-        /// Degree from which on surpluses tell how high a degree would have to be.
+        /// Degree from which on surpluses show how high a degree would have to be.
         telling_degree: u8 = 16, moves "bounds within a tolerance";
-        /// Degrees over which surpluses are compared to tell how high a degree would have to be.
+        /// Degrees over which surpluses are compared to estimate how high a degree would have to be.
         compared_degrees: u8 = 8, moves "bounds within a tolerance";
         /// A box is split where the expected surplus of a higher degree than is allowed exceeds this multiple of the
         /// largest allowed one.

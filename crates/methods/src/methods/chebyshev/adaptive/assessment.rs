@@ -55,13 +55,13 @@ impl Adaptation<'_> {
         Ok((0..nodes.len()).map(|node| largest(by_row.iter().map(|errors| errors[node]))).collect())
     }
 
-    /// The rows of a sub-box that are looked at, the last ones first.
+    /// The examined rows of a sub-box, the last ones first.
     pub(super) fn looked_at(&self, sub_box: &SubBox) -> Vec<usize> {
         (0..self.goal.rows().min(sub_box.rows())).rev().step_by(self.every).collect()
     }
 
-    /// Estimates a sub-box's error. A glance at some rows tells where it may be too large; those are looked at closely,
-    /// the worst first, until one of them is.
+    /// Estimates a sub-box's error. A glance at some rows shows where it may be too large; those rows are examined
+    /// closely, the worst first, until the error of one of them is too large.
     pub(super) fn check(&mut self, sub_box: &mut SubBox) -> Result<(), EnsembleError> {
         sub_box.estimates = None;
         let rows = self.looked_at(sub_box);
@@ -70,7 +70,7 @@ impl Adaptation<'_> {
         suspects.sort_by(|&a, &b| glance[b].total_cmp(&glance[a]).then(a.cmp(&b)));
         sub_box.error = glance.iter().filter(|error| **error <= 1.0).fold(0.0, |most, error| error.max(most));
         let mut suspects: &[usize] = &suspects.into_iter().map(|index| rows[index]).collect::<Vec<usize>>();
-        // The worst alone at first: it tells most often.
+        // The worst alone at first: it decides most often.
         let mut together = 1;
         while !suspects.is_empty() && !is_missed(sub_box.error) {
             let (worst, others) = suspects.split_at(together.min(suspects.len()));
@@ -109,7 +109,7 @@ impl Adaptation<'_> {
         )
     }
 
-    /// Estimates over a sub-box in some rows, by row and output, and the rows that are kept.
+    /// Estimates over a sub-box in some rows, by row and output, and the rows that are stored.
     fn estimates(
         &mut self,
         sub_box: &SubBox,
@@ -152,7 +152,7 @@ impl Adaptation<'_> {
     }
 }
 
-/// The rows of a sub-box's surrogate that are looked at.
+/// The examined rows of a sub-box's surrogate.
 #[derive(Clone, Copy)]
 pub(super) struct Looks<'a> {
     pub rows: &'a [usize],

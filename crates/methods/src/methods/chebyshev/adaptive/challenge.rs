@@ -22,7 +22,7 @@ impl Adaptation<'_> {
         if sub_box.challenged { 0 } else { most_ends(sub_box) + sub_box.spread_wanted() }
     }
 
-    /// Adds to a sub-box's validation samples as many new ones as there is room for.
+    /// Adds new validation samples to a sub-box, as far as the budget allows.
     pub(super) fn challenge(&mut self, sub_box: &mut SubBox) -> Result<(), EnsembleError> {
         if std::mem::replace(&mut sub_box.challenged, true) {
             return Ok(());
@@ -42,13 +42,13 @@ impl Adaptation<'_> {
         self.check(sub_box)
     }
 
-    /// Points near to all at which, in the rows that are looked at, outputs are least or largest by the surrogate, and
-    /// not near to nodes or to validation samples.
+    /// Points near all points at which outputs are least or largest by the surrogate in the examined rows, and not near
+    /// nodes or validation samples.
     fn ends(&mut self, sub_box: &SubBox) -> Result<Vec<Vec<f64>>, EnsembleError> {
         let rows = self.looked_at(sub_box);
         let surrogate = Surrogate::sparse(&sub_box.grid);
         let (search, goal) = (&self.search, &self.goal);
-        // For each output, the width of its range over the allowed error, and the places of its ends.
+        // For each output, the width of its range over the allowed error, and the points of its ends.
         let look = |index: usize, row: &Row, previous: &mut Previous| {
             let found = row.range(search, previous).extents.into_iter().zip(&goal.outputs);
             let counting = found.filter(|(_, goal)| rows[index] < goal.rows);
@@ -64,8 +64,8 @@ impl Adaptation<'_> {
             look,
         )?;
         let found = found.into_iter().flatten();
-        // Outputs that hardly range are not off by much, unless all of it is in one corner: of these the one that
-        // ranges most tells. Of NaN there is no place.
+        // Outputs that hardly range are not off by much, unless all of it is in one corner: if all of them hardly
+        // range, the widest one counts. NaN has no extremes.
         let widest = found.clone().map(|(width, _)| width).fold(0.0, f64::max).min(1.0);
         let matters = found.filter(|(width, _)| *width > 0.0 && *width >= widest);
         let places: Vec<Vec<f64>> = matters.flat_map(|(_, places)| places).collect();
@@ -81,7 +81,7 @@ fn most_ends(sub_box: &SubBox) -> usize {
 
 /// How far apart points are for a sub-box's surrogate.
 struct Scale {
-    /// Of each axis how much it matters.
+    /// Weight of each axis.
     weights: Vec<f64>,
     /// Nearer points are the same.
     near: f64,

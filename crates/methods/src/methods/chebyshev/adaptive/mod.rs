@@ -4,7 +4,7 @@
 //! Each box has a sparse grid (Gerstner & Griebel, Computing 71 (2003) 65). A round adds the indices with the largest
 //! expected hierarchical surplus. The surplus of an index is the error of the surrogate at its node before the node is
 //! added: for nested nodes, the difference of the polynomials without and with it. The expected surplus is that of the
-//! indices before, times what one degree more would change if the response depended on a single weighted sum of the
+//! indices before, times the change by one degree more if the response depended on a single weighted sum of the
 //! parameters, as it does to first order. Validation samples decide whether the surrogate is good enough, new ones each
 //! time it seems to be (`challenge`).
 
@@ -30,7 +30,7 @@ use crate::numerics::clock::Instant;
 use crate::numerics::{EMPTY, ParameterBox, Range, SAFETY_OF_SURROGATE, SparseGrid, Surrogate, largest, union};
 use tuning::TUNING;
 
-/// What a surrogate has to meet.
+/// Requirements on a surrogate.
 pub(super) struct Goal {
     pub outputs: Vec<OutputGoal>,
     pub budget: Budget,
@@ -38,7 +38,7 @@ pub(super) struct Goal {
     pub spent: usize,
 }
 
-/// What the surrogate of an output has to meet.
+/// Requirements on the surrogate of an output.
 pub(super) struct OutputGoal {
     pub allowed: f64,
     /// Rows that count: from the next one on the steps miss the tolerance.
@@ -58,7 +58,7 @@ impl Goal {
     }
 }
 
-/// What an adaptive search finds.
+/// Result of an adaptive search.
 pub(super) struct Adapted {
     /// By row and output; with sensitivities only where the box was not split.
     pub found: Vec<Estimate>,
@@ -68,9 +68,9 @@ pub(super) struct Adapted {
     pub boxes: usize,
     /// Highest degree along each axis.
     pub order: Vec<usize>,
-    /// What came of the simulations.
+    /// Outcome of the simulations.
     pub simulated: Simulated,
-    /// The surrogate, where it is to be kept.
+    /// The surrogate, if it is to be stored.
     pub kept: Option<KeptSurrogate>,
 }
 
@@ -86,16 +86,16 @@ pub(super) struct Adaptation<'r> {
     /// Interval of the rows in which surrogates are examined.
     every: usize,
     search: RangeSearch,
-    /// The ensemble, where it is one over lines through a box.
+    /// The ensemble, if it is one over lines through a box.
     combined: Option<&'r Combined<'r>>,
-    /// Of the whole box.
+    /// Validation samples of the whole box.
     validation: &'r Validation,
-    /// The surrogate that is kept, box by box, where one is.
+    /// The stored surrogate, box by box, if one is to be stored.
     kept: Option<KeptSurrogate>,
 }
 
 /// A surrogate within a goal: over lines through the box where parameters act through one number, else over the box.
-/// Over lines none can be kept.
+/// None over lines can be stored.
 ///
 /// # Errors
 /// Where a sample cannot be assembled or a closure not be compiled, and at an interruption.
@@ -162,7 +162,7 @@ impl<'r> Adaptation<'r> {
                 continue;
             }
             if met && boxes.iter().any(|sub_box| sub_box.estimates.is_none()) {
-                // Met as far as a glance tells.
+                // A glance alone finds that they meet it.
                 let detail = Detail::of(&boxes);
                 boxes.iter_mut().try_for_each(|sub_box| self.conclude_box(sub_box, detail))?;
                 continue;
@@ -279,9 +279,8 @@ impl<'r> Adaptation<'r> {
         Ok((samples.len(), motions))
     }
 
-    /// A round: adds the indices with the largest expected surplus, and, so that as many nodes are simulated together
-    /// as go well together, those that would come next. Up to `reserve` simulations of the budget are kept free for
-    /// validation samples.
+    /// A round: adds the indices with the largest expected surplus, and those that would come next, so that enough
+    /// nodes are simulated together. Up to `reserve` simulations of the budget are left for validation samples.
     fn refine(&mut self, sub_box: &mut SubBox, reserve: usize) -> Result<(), EnsembleError> {
         let left = self.goal.budget.simulations.saturating_sub(self.goal.spent);
         let room = left.saturating_sub(reserve.min(self.goal.budget.simulations / TUNING.kept_free));

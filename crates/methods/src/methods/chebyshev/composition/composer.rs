@@ -17,7 +17,7 @@ pub struct NodeMotions<'a> {
     pub values: &'a [f64],
     /// Values of a row.
     pub stride: usize,
-    /// Of coordinates that turn, by coordinate; none, or one for each.
+    /// Courses of coordinates that turn, by coordinate; none, or one for each.
     pub courses: &'a [Option<Course>],
 }
 

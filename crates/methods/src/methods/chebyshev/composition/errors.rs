@@ -17,7 +17,7 @@ impl Row<'_> {
     }
 
     /// Errors of the outputs at a glance: how far the coordinates' errors move them where the samples have their least
-    /// and largest values. Near an extreme that is an upper bound of what moves the extreme itself.
+    /// and largest values. Near an extreme that is an upper bound of the move of the extreme itself.
     pub fn errors_at_samples(&self, HeldOut { points, direct }: HeldOut<'_>, row: usize) -> Vec<f64> {
         let outputs = self.ensemble.outputs();
         if row >= direct.rows() {
@@ -43,8 +43,8 @@ impl Row<'_> {
         (0..outputs).map(error).collect()
     }
 
-    /// Errors of the outputs' ranges: what the search may have missed, how far the coordinates' errors move the ends,
-    /// and how far the validation samples lie outside in row `row`.
+    /// Errors of the outputs' ranges: that of the search, the moves of the ends by the coordinates' errors, and how far
+    /// the validation samples lie outside in row `row`.
     pub fn errors(
         &self,
         range_search: &RangeSearch,
@@ -175,7 +175,7 @@ impl Row<'_> {
         moved
     }
 
-    /// For each way of moving, how far it moves every output at the places of its extremes.
+    /// For each way of moving, how far it moves every output at its extremes.
     fn moved_at_extremes(&self, found: &[Extent], ways: &[Moves]) -> Vec<Vec<f64>> {
         let all: Vec<Moves> = [Moves::default()].into_iter().chain(ways.iter().cloned()).collect();
         let outputs: Vec<usize> = (0..found.len()).collect();

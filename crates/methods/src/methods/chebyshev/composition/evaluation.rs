@@ -40,7 +40,7 @@ impl Row<'_> {
     }
 
     /// The largest errors of the independent coordinates' polynomials, and of their velocities': those at validation
-    /// samples, or what the polynomials lack; zero of velocities that are not expanded, since no output needs them.
+    /// samples, or of truncation; zero for velocities that are not expanded, since no output needs them.
     pub(super) fn coordinate_errors(&self, points: &[Vec<f64>], motion: &[f64]) -> Vec<(usize, f64)> {
         let expanded = self.expanded(points);
         let values = |line: usize| line * points.len()..(line + 1) * points.len();
@@ -182,7 +182,7 @@ impl Row<'_> {
         motion
     }
 
-    /// Parts of it that are kept after the run; `own` says which outputs are the polynomials through their own samples.
+    /// Parts of it that are stored after the run; `own`: whether each output is the polynomial through its own samples.
     pub fn kept(&self, own: Vec<bool>) -> KeptRow {
         KeptRow {
             time: self.time,

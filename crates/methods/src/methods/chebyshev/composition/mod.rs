@@ -1,9 +1,9 @@
 //! Composition: the smooth functions are expanded. The independent coordinates and their velocities become polynomials
 //! of the parameters; every output follows from them through the loop closure and its own formula.
 //!
-//! Where an output that is composed in this way is the same polynomial as the one through its own samples, that
-//! polynomial takes its place: its range costs no closure. Where it is NaN, or not what the samples' simulations say,
-//! so does that polynomial, as with `expand: output`.
+//! If an output that is composed in this way is the same polynomial as the one through its own samples, that polynomial
+//! replaces it: its range costs no closure. If it is NaN, or differs from the simulated samples, that polynomial
+//! replaces it too, as with `expand: output`.
 
 mod composer;
 mod errors;
@@ -47,7 +47,7 @@ pub(super) struct Row<'r> {
     domain: &'r ParameterBox,
     closure: &'r dyn Closure,
     time: f64,
-    /// Of each of the 2n lines, and then of each output; zero of velocities that are not expanded.
+    /// Coefficients of each of the 2n lines, and then of each output; zero for velocities that are not expanded.
     coefficients: Vec<f64>,
     velocities: bool,
     /// Least and largest of each of the 2n lines over the samples.
@@ -74,7 +74,7 @@ struct Sorted {
     alike: Vec<usize>,
     /// they follow from the coordinates,
     composed: Vec<usize>,
-    /// or are not what follows from them.
+    /// or they differ from the values that follow from the coordinates.
     lost: Vec<usize>,
     /// How far each is from its own polynomial.
     defects: Vec<f64>,
@@ -105,7 +105,7 @@ impl<'r> Row<'r> {
         Self { ensemble, surrogate, domain, closure, time, coefficients, velocities, extent, at_samples, phases }
     }
 
-    /// What its polynomials are made by.
+    /// Surrogate of its polynomials.
     pub fn surrogate(&self) -> &Surrogate {
         self.surrogate
     }
@@ -147,7 +147,7 @@ impl<'r> Row<'r> {
         let found = of_polynomials(&alike, previous);
         let mut is_own = vec![false; outputs];
         for ((&output, mut extent), apart) in alike.iter().zip(found.clone()).zip(self.apart_at_ends(&alike, &found)) {
-            // A kink beside all samples shows where the range ends. Written so that NaN does too.
+            // A kink between all samples shows at the end of the range. Written so that NaN does too.
             if apart <= self.alike(output, &rounding) + extent.gap {
                 extent.gap += largest([defects[output], apart]);
                 extents[output] = extent;
@@ -175,8 +175,8 @@ impl<'r> Row<'r> {
         Found { extents, expanded, own: is_own }
     }
 
-    /// What becomes of each output, given its values at some points and at the compared samples, and its own
-    /// polynomial's at the points.
+    /// Sorts the outputs, given the values of each at some points and at the compared samples, and those of its own
+    /// polynomial at the points.
     fn sorted<'v>(
         &self,
         compared: &[usize],
@@ -214,7 +214,7 @@ impl<'r> Row<'r> {
         ends.iter().zip(found).map(apart).collect()
     }
 
-    /// Highest degree along each axis, or what stands for it where a coordinate turns more often.
+    /// Highest degree along each axis, or the one that stands for it if a coordinate turns more often.
     fn degrees(&self) -> Vec<u8> {
         with_turns(self.surrogate.basis(), &self.coefficients, &self.phases, &self.extent, self.ensemble.scales())
     }
@@ -232,14 +232,14 @@ impl<'r> Row<'r> {
         Functions { outputs, degrees, are_polynomials: composed.is_none(), rounding, places, evaluate }
     }
 
-    /// Differences of an output below this are none.
+    /// Differences of an output below this are rounding.
     fn rounding(&self, output: usize) -> f64 {
         let range = Range::of(self.own_samples(output));
         // Where it is NaN, nothing is known.
         TUNING.rounding * range.lower.abs().max(range.upper.abs()).max(0.0)
     }
 
-    /// Samples at which outputs are held against the simulation, spread over all.
+    /// Samples at which outputs are compared with the simulation, spread over all.
     fn compared(&self) -> Vec<usize> {
         let count = self.surrogate.samples().len();
         (0..count).step_by(count.div_ceil(TUNING.compared)).collect()

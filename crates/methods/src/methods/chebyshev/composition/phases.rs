@@ -8,7 +8,8 @@ use crate::methods::ensemble::{Ensemble, EnsembleError};
 use crate::methods::validation::ValidationTable;
 use crate::numerics::{Course, ParameterBox, Phase, Range, SparseBasis};
 
-/// For each coordinate that turns the corner of the box at which it turns furthest, as far as samples at `points` tell.
+/// For each coordinate that turns, the corner of the box at which it turns furthest, estimated from samples at
+/// `points`.
 pub fn turning(direct: &ValidationTable, points: &[Vec<f64>], ensemble: &dyn Ensemble) -> Vec<Option<Vec<f64>>> {
     let Some(last) = direct.rows().checked_sub(1) else { return Vec::new() };
     let of_coordinate = |(coordinate, scale): (usize, &f64)| {
@@ -64,9 +65,8 @@ pub(super) fn phases<'c>(
     closure.independent().iter().filter_map(of).collect()
 }
 
-/// Positions (n lines of samples), and velocities where they are there, with those of such coordinates as times of
-/// their courses, and rates of these. `known` are the times, line by line of the courses, as far as they were told
-/// before.
+/// Positions (n lines of samples), and velocities if there are any, with those of such coordinates as times of their
+/// courses, and rates of these. `known` are the times, line by line of the courses, as far as they are known.
 pub(super) fn as_times<'m>(
     motion: &'m [f64],
     phases: &[(usize, Phase)],
@@ -89,8 +89,8 @@ pub(super) fn as_times<'m>(
     motion
 }
 
-/// Highest degree along each axis, or how far a coordinate that is expanded as times turns along it, in its scale: what
-/// polynomials of the coordinate itself would have to follow. An axis turns it by the share of the coefficients whose
+/// Highest degree along each axis, or how far a coordinate that is expanded as times turns along it, in its scale: the
+/// degree that polynomials of the coordinate itself would need. An axis turns it by the share of the coefficients whose
 /// terms it has.
 pub fn with_turns(
     basis: &SparseBasis,

@@ -7,10 +7,10 @@ tuning! {
     "methods: chebyshev: composition" {
         /// Most independent coordinates that are moved one by one.
         most_moved: usize = 4, moves "errors of Chebyshev bounds";
-        /// What moves an end by less than this share of the range's width moves the place of the extreme by so little
+        /// A move of an end by less than this share of the range's width moves the place of the extreme by so little
         /// that it does not matter.
         far: f64 = 0.1, moves "errors of Chebyshev bounds";
-        /// Values of all outputs that are held at once.
+        /// Values of all outputs that are in memory at once.
         values_at_once: usize = 1 << 20, moves "time and memory";
         /// Fewest points that are taken together.
         least_at_once: usize = 16, moves "time and memory";
@@ -25,7 +25,7 @@ tuning! {
         /// share of their range, and the second, as a share of their values: accelerations and reactions of the
         /// samples have errors of the scheme that those which follow do not have.
         disagrees: (f64, f64) = (0.25, 1e-3), moves "Chebyshev bounds";
-        /// Samples at which outputs are held against the simulation, at most.
+        /// Samples at which outputs are compared with the simulation, at most.
         compared: usize = 24, moves "Chebyshev bounds";
         /// Samples, for either end of an output, near which it is searched for.
         seeds: usize = 4, moves "Chebyshev bounds";
@@ -34,8 +34,8 @@ tuning! {
         /// Corners of the box at which a search looks first: all of eight parameters', and of more such that any two
         /// meet at all their ends.
         corners: usize = 256, moves "Chebyshev bounds";
-        /// Rows looked at one after the other, so that each can begin where the one before ended. Fixed, so that
-        /// results do not depend on the number of threads.
+        /// Rows examined one after the other, so that each can begin where the one before ended. Fixed, so that results
+        /// do not depend on the number of threads.
         rows_in_order: usize = 16, moves "Chebyshev bounds";
         /// A coordinate turns where it ends so far from where it began, in its scale: half a turn.
         turned: f64 = std::f64::consts::PI, moves "Chebyshev bounds of mechanisms with cranks";

@@ -19,7 +19,7 @@ pub(super) enum PolynomialSource<'e> {
 /// Positions and velocities of a part at a time.
 #[derive(Clone, Debug)]
 pub(super) struct RowMotion {
-    /// Of the branches of segments that all samples are on, or not far from.
+    /// Branches of the segments that all samples are in, or not far from.
     branches: Vec<Option<Branch>>,
     /// Whether all of the part is in one segment, and this has a branch.
     pub is_common: bool,
@@ -30,12 +30,12 @@ pub(super) struct RowMotion {
 struct Branch {
     /// Coefficients, line by line.
     coefficients: Vec<f64>,
-    /// Errors of each line, for each of the part's sets of samples that tell them.
+    /// Errors of each line, for each of the part's sets of samples that determine them.
     errors: Vec<Vec<f64>>,
 }
 
 impl RowMotion {
-    /// Of all rows at these times.
+    /// Motions of all rows at these times.
     pub fn of_rows(piece: &Piece, lattice: &Lattice, times: &[f64], source: PolynomialSource) -> Vec<Self> {
         let held_out = piece.surrogate.points(piece.motions.points.clone());
         let of_row = |&time: &f64| {
@@ -47,7 +47,7 @@ impl RowMotion {
             Self { branches, is_common }
         };
         let own: Vec<Self> = times.iter().map(of_row).collect();
-        // Errors of rows beside it count too, so that none vanishes by a change of sign.
+        // Errors of neighbouring rows count too, so that none vanishes by a change of sign.
         let beside = |row: usize| {
             let mut raised = own[row].clone();
             for other in &own[row.saturating_sub(1)..(row + 2).min(own.len())] {
@@ -73,7 +73,7 @@ impl RowMotion {
         Some(branch.coefficients.chunks_exact(point.terms()).map(|line| point.value(line)))
     }
 
-    /// Error of a line there, by one of the part's sets of samples that tell it.
+    /// Error of a line there, from one of the part's sets of samples.
     pub fn error(&self, segment: usize, told: usize, line: usize) -> Option<f64> {
         self.branches[segment].as_ref().map(|branch| branch.errors[told][line])
     }
@@ -90,7 +90,7 @@ impl Branch {
             doubts.iter_mut().zip(motion.doubts).for_each(|(own, other)| *own = own.max(other));
             Some(motion.values)
         };
-        // Of a fit, by how much it misses each of its samples where that is left out.
+        // Of a fit: leave-one-out errors of its samples.
         let mut left_out = Vec::new();
         let coefficients = match (surrogate.squares(), source) {
             (Some(squares), _) => {
@@ -188,7 +188,7 @@ fn jet_at(space: &JetSpace, jet: &SegmentMotions, segment: usize, time: f64) -> 
 mod tests {
     use super::*;
 
-    /// t³ + 2t in a segment that lasts 1 + 0.1 ξ + 0.02 ξ² s: at a time no parameter has a part in it, and it goes on
+    /// t³ + 2t in a segment that lasts 1 + 0.1 ξ + 0.02 ξ² s: at a time it depends on no parameter, and it goes on
     /// beyond the segment.
     #[test]
     fn a_jet_at_a_time_does_not_know_of_its_segment() {

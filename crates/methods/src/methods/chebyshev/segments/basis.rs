@@ -22,7 +22,7 @@ pub(super) struct Powers(Vec<Vec<u8>>);
 
 /// Products up to a degree, and the same up to one less times the root of each depth behind a surface: behind the
 /// surface on which an event is just grazed, instants and motions behind go with the root of the distance to it. Powers
-/// are those of places in a box about the samples: of a layer, which is thin, those of ξ would cancel.
+/// are those of coordinates in a box about the samples: in a layer, which is thin, those of ξ would cancel.
 #[derive(Clone, Debug)]
 pub(super) struct Fitted {
     powers: Powers,
@@ -85,15 +85,14 @@ impl Powers {
 
 impl Level {
     /// Through the zeros of margins that are given at samples. Where one side's are no continuation of the other's, no
-    /// polynomial has both: then samples say where it is by shares of the largest on their side, or by their sides
-    /// alone.
+    /// polynomial has both: then it is fitted to shares of the largest margin on each side, or to the sides alone.
     pub fn through(samples: &[(&[f64], f64)]) -> Option<Self> {
         let margins: Vec<f64> = samples.iter().map(|(_, margin)| *margin).collect();
         let own = Self::of_values(samples, &margins)?;
         let size = |sign: f64| margins.iter().map(|margin| sign * margin).fold(0.0, f64::max);
         let sizes = [-1.0, 1.0].map(size);
         let shares: Vec<f64> = margins.iter().map(|margin| margin / sizes[usize::from(*margin > 0.0)]).collect();
-        // Samples on the wrong side that are not beside the surface.
+        // Samples on the wrong side that are not near the surface.
         let misplaced = |level: &Self| {
             let is_off = |((xi, _), share): (&(&[f64], f64), &f64)| {
                 share.abs() > TUNING.near_surface && level.at(xi) * share < 0.0
@@ -108,7 +107,7 @@ impl Level {
         std::iter::once(own).chain(others).min_by_key(misplaced)
     }
 
-    /// Of the degree at which samples that are left out are met best.
+    /// The level of the degree with the smallest leave-one-out error.
     fn of_values(samples: &[(&[f64], f64)], values: &[f64]) -> Option<Self> {
         let k = samples.first()?.0.len();
         let size = largest(values.iter().copied());
@@ -181,7 +180,7 @@ impl End {
         self.offset < 0.0
     }
 
-    /// How far the surface may be from the true one: what only divides a part is where it is put.
+    /// How far the surface may be from the true one; zero for a surface that only divides a part.
     pub fn error(&self) -> f64 {
         if self.offset == 0.0 { self.level.error } else { 0.0 }
     }
@@ -193,7 +192,7 @@ impl Fitted {
         Self::about(degree, depths, None, samples)
     }
 
-    /// With the root of a depth in place of the ξ along an axis.
+    /// With the root of a depth instead of the ξ along an axis.
     pub fn across(degree: usize, depth: &Level, axis: usize, samples: &[Vec<f64>]) -> Self {
         Self::about(degree, &[], Some((axis, depth.clone())), samples)
     }
@@ -221,7 +220,7 @@ impl Fitted {
         self.powers.0.len() + self.depths.len() * self.of_depths.0.len()
     }
 
-    /// The place of some ξ in the box about the samples.
+    /// Coordinates of some ξ in the box about the samples.
     fn place(&self, xi: &[f64]) -> Vec<f64> {
         let mut place = xi.to_vec();
         if let Some((axis, depth)) = &self.across {
@@ -277,7 +276,7 @@ impl Basis {
         }
     }
 
-    /// Size of the terms that coefficients lack; of those that are fitted or a jet's, other samples tell.
+    /// Size of the terms beyond the coefficients; zero for a fit or a jet, whose errors other samples give.
     pub fn truncation(&self, coefficients: &[f64]) -> f64 {
         match self {
             Self::Grid(basis) => truncation(basis, coefficients),

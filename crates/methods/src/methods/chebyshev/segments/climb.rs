@@ -1,16 +1,16 @@
 //! Ranges of the outputs at a time: the extremes over each part of the box that is in a segment, its surfaces included.
 //!
 //! Within such a part an output is smooth, but it may change much faster with the share of the segment than along a
-//! surface on which that is the same: a contact is short beside the spread of its instants. A climb moves by a linear
-//! programme in a trust region that is as narrow across these surfaces as it has to be: the steepest way that leaves
-//! neither the box nor the segment. Then it is moved to the surface that it was to reach.
+//! surface on which that is the same: a contact is short compared with the spread of its instants. A climb moves by a
+//! linear programme in a trust region that is as narrow across these surfaces as it has to be: the steepest way that
+//! leaves neither the box nor the segment. Then it is moved to the surface that it was to reach.
 
 use super::row::SegmentRow;
 use super::seeds::Lattice;
 use super::surrogate::Point;
 use super::tuning::TUNING;
 
-/// A place on the way to an extreme.
+/// A point on the way to an extreme.
 #[derive(Clone)]
 pub(super) struct Climb {
     pub output: usize,
@@ -39,7 +39,7 @@ struct Move {
     of_margins: Vec<Vec<f64>>,
 }
 
-/// Places that are looked at, each in its segment, and climbs from the best of them.
+/// Points that are examined, each in its segment, and climbs from the best of them.
 pub(super) fn begun(row: &SegmentRow, lattice: &Lattice) -> (Vec<(usize, Point)>, Vec<Climb>) {
     let time = row.time;
     let surrogate = &row.piece.surrogate;

@@ -8,7 +8,7 @@ pub(super) struct Ends {
     pub extent: Extent,
     /// How far the polynomials' errors move either end.
     pub errors: [f64; 2],
-    /// Of either end, the corner of the box that it is at, however the polynomials err.
+    /// For either end, the corner of the box that it is at, however the polynomials err.
     pub corners: [Option<HeldCorner>; 2],
 }
 
@@ -16,25 +16,25 @@ pub(super) struct Ends {
 #[derive(Clone, Debug)]
 pub(super) struct HeldCorner {
     pub xi: Vec<f64>,
-    /// By how much other places may be beyond it.
+    /// By how much values elsewhere may be beyond it.
     pub beyond: f64,
 }
 
-/// A place that is looked at beside an end.
+/// A point that is examined as a rival of an end.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Rival {
     /// How far its value is within the end.
     pub within: f64,
     /// How far the polynomials' errors move it.
     pub error: f64,
-    /// By how many times themselves errors change on the way to the end's place.
+    /// Largest change of errors on the way to the end's place, as a multiple of the errors.
     pub change: f64,
-    /// By how much they do as samples tell that differ in one parameter.
+    /// Largest change of errors on that way, from samples that differ in one parameter only.
     pub along: Option<f64>,
 }
 
 impl Rival {
-    /// By how much it may be beyond an end that errors move so far.
+    /// By how much it may be beyond an end that errors move by `error`.
     pub fn beyond(&self, error: f64) -> f64 {
         let apart = SAFETY_OF_SURROGATE * (error + self.error);
         let near = SAFETY_OF_SURROGATE * self.change * error.max(self.error);
@@ -58,7 +58,7 @@ impl Ends {
         }
     }
 
-    /// Of two parts together: the part that is not the outermost may reach further by its error.
+    /// Joins the ends of two parts: the part that is not the outermost may reach further by its error.
     pub fn or(mut self, other: Self) -> Self {
         let ends = |ends: &Self| [-ends.extent.range.lower, ends.extent.range.upper];
         for (end, (own, others)) in ends(&self).into_iter().zip(ends(&other)).enumerate() {

@@ -11,7 +11,8 @@ use super::surrogate::Point;
 use super::tuning::TUNING;
 use crate::numerics::{Extent, SAFETY_OF_SURROGATE};
 
-/// The outputs' ranges, with the places of their ends and their errors; samples tell of their misses at corners.
+/// The outputs' ranges, with the places of their ends and their errors; `misses` are those of samples, for ends at
+/// corners.
 pub(super) fn ends(row: &SegmentRow, lattice: &Lattice, misses: Option<&Misses>) -> Vec<Ends> {
     let (seeds, mut climbs) = begun(row, lattice);
     for _ in 0..TUNING.moves {
@@ -31,7 +32,7 @@ pub(super) fn ends(row: &SegmentRow, lattice: &Lattice, misses: Option<&Misses>)
     let errors = row.errors(&places, &row.outputs_in(&places));
     let count = 2 * row.outputs;
     let errors = |output: usize| [0, 1].map(|end| errors[output * count + 2 * output + end]);
-    // A corner far below the end is none.
+    // A corner far below the end does not count.
     let near_corner = |climb: &Climb, error: f64| {
         corner(row, climb).filter(|corner| (climb.value - corner.value).abs() <= SAFETY_OF_SURROGATE * error)
     };

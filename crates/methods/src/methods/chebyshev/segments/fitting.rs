@@ -1,8 +1,8 @@
 //! Polynomials by least squares in the parts of a box of several words.
 //!
-//! In each part the degree is that at which instants, and states there, of samples that are left out are met best;
-//! samples are added where a part has few. Behind a surface that is grazed motions change within a layer, which becomes
-//! a part of its own where one polynomial does not do.
+//! In each part the degree is that with the smallest leave-one-out errors of instants, and of states there; samples are
+//! added where a part has few. Behind a surface that is grazed motions change within a layer, which becomes a part of
+//! its own where one polynomial does not suffice.
 
 use super::basis::{Basis, Fitted, Level};
 use super::parts::{Samples, WordPart};
@@ -12,7 +12,7 @@ use super::tuning::TUNING;
 use crate::methods::ensemble::{Ensemble, EnsembleError};
 use crate::numerics::{CutMotions, LeastSquares, SegmentMotions, corners, largest, spread};
 
-/// Samples, and what their polynomials are held against.
+/// Samples, and the motions with which their polynomials are compared.
 pub(super) struct Fitting<'v> {
     pub samples: Samples,
     /// Highest degree.
@@ -88,7 +88,7 @@ impl Fitting<'_> {
         }
     }
 
-    /// Adds samples; whether they can be cut.
+    /// Adds samples. Returns whether they can be cut.
     fn add(&mut self, ensemble: &dyn Ensemble, xi: Vec<Vec<f64>>) -> Result<bool, EnsembleError> {
         let Some(motions) = ensemble.segments(&ensemble.domain().samples(&xi))? else { return Ok(false) };
         self.samples.motions.append(motions, self.samples.xi.len());
@@ -96,7 +96,7 @@ impl Fitting<'_> {
         Ok(true)
     }
 
-    /// The polynomials of a part, and by what share of their range they miss samples that are left out.
+    /// The polynomials of a part, and their largest leave-one-out error as a share of the values' range.
     fn fitted(&self, part: &WordPart, levels: &[Option<Level>]) -> Option<(f64, Piece)> {
         let places = self.samples.places(part, levels);
         let motions = self.samples.motions.words[part.word].picked(&places);
@@ -165,7 +165,7 @@ mod tests {
     };
 
     /// Balls thrown up at speeds from 4.5 to 5.5 m/s, under a ceiling at a height of 1.3 m on a spring of ω²; those
-    /// that are faster than a speed pass beside it.
+    /// that are faster than a speed pass next to it.
     struct Throws {
         domain: ParameterBox,
         omega: f64,

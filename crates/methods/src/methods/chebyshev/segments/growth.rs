@@ -23,7 +23,7 @@ struct Scales {
 }
 
 impl Growth {
-    /// Of a low degree; `None` where motions are not cut.
+    /// Starts from a low degree; `None` if motions are not cut, or if it has too many terms.
     ///
     /// # Errors
     /// Where a sample cannot be assembled.
@@ -137,7 +137,7 @@ fn foreseen(sizes: &FxHashMap<Vec<u8>, f64>, rates: &[f64], levels: &[u8]) -> f6
 mod tests {
     use super::*;
 
-    /// (1 + a x + b y)⁻¹ has terms of the powers of a x + b y: what the axes say of x y is right.
+    /// (1 + a x + b y)⁻¹ has terms of the powers of a x + b y, so that the estimate of x y from the axes is right.
     #[test]
     fn a_mixed_term_follows_from_those_before_it() {
         let (a, b) = (0.2, 0.05);

@@ -1,4 +1,4 @@
-//! How far another place may pass an end at a corner of the box, however the polynomials err.
+//! How far values elsewhere may be beyond an end at a corner of the box, however the polynomials err.
 
 use super::ends::Rival;
 use super::row::SegmentRow;
@@ -23,7 +23,7 @@ pub(super) struct AxisLines<'p> {
     points: &'p [Vec<f64>],
     /// By axis, the samples on each line along it.
     of_axes: Vec<Vec<Vec<usize>>>,
-    /// Those at −1, 0 and 1 along all axes; none where one of them is missing.
+    /// Those at −1, 0 and 1 along all axes; none if one of them is missing.
     lattice: Vec<usize>,
 }
 
@@ -36,7 +36,7 @@ pub(super) struct Misses<'l> {
 
 /// Misses of an output: a parabola along each axis through those on the lattice, and the rest.
 struct Missed<'m> {
-    /// Misses on the lattice; none where parabolas do not tell those of other samples.
+    /// Misses on the lattice; none if parabolas do not give those of other samples.
     on_lattice: Vec<f64>,
     /// How far other samples are from the parabolas, where there are any.
     rest: Option<f64>,
@@ -44,7 +44,7 @@ struct Missed<'m> {
     output: usize,
 }
 
-/// Places that are looked at in their segments, with the outputs there and how far errors move these (output, place).
+/// Points that are examined in their segments, with the outputs there and how far errors move these (output, place).
 pub(super) struct Looked {
     places: Vec<(usize, Point)>,
     values: Vec<f64>,
@@ -102,7 +102,7 @@ impl<'l> Misses<'l> {
         let others: Vec<usize> =
             (0..count).filter(|sample| !lattice.contains(sample) && values[*sample].is_finite()).collect();
         let apart = |&sample: &usize| values[sample] - parted.parabolas(&self.lines.points[sample]);
-        // How much is left between the lattice's points the other samples tell.
+        // The other samples show how much is left between the lattice's points.
         let rest = (is_known && !others.is_empty()).then(|| largest(others.iter().map(apart)));
         match rest.filter(|rest| *rest < error) {
             Some(rest) => Missed { rest: Some(rest), ..parted },
@@ -110,7 +110,7 @@ impl<'l> Misses<'l> {
         }
     }
 
-    /// Largest change of an output's misses along an axis; `None` where no line through a corner tells it.
+    /// Largest change of an output's misses along an axis; `None` if no such line goes through the corner.
     fn along(&self, output: usize, axis: usize, corner: &[f64]) -> Option<f64> {
         let count = self.lines.points.len();
         let values = &self.values[output * count..][..count];
@@ -152,7 +152,7 @@ impl Looked {
         Self { places, values, errors }
     }
 
-    /// By how much places in the part may be beyond a corner; infinite where that is not known.
+    /// By how much values in the part may be beyond a corner; infinite if unknown.
     pub fn beyond(&self, row: &SegmentRow, corner: &Corner, misses: Option<&Misses>) -> f64 {
         let Some(slope) = row.piece.slope_of_errors() else { return f64::INFINITY };
         let surrogate = &row.piece.surrogate;
@@ -168,7 +168,7 @@ impl Looked {
             let shares = if by_share { surrogate.share(point, corner.segment, row.time).0 - share } else { 0.0 };
             slope * distance + of_share * shares.abs()
         };
-        // Samples tell errors at corners, and how these change on the way.
+        // Samples give the errors at corners, and the change of errors on the way.
         let told = misses.filter(|_| !passes).map(|own| own.of(corner.output, corner.error));
         let missed = |xi: &[f64]| told.as_ref().map_or(0.0, |own| own.parabolas(xi));
         let along: Option<Vec<f64>> = (0..xi.len()).map(|axis| told.as_ref()?.along(axis, xi)).collect();
@@ -204,7 +204,7 @@ impl Looked {
             let rival = Rival { within: within(*axis), error: own_error, change: change(&beside[*axis]), along: None };
             rival.beyond(own_error) > 0.0
         };
-        // Where slopes are too small to tell, as far from the corner as errors may go on rising.
+        // Where slopes are too small to decide, as far from the corner as errors may go on rising.
         let of_axis = |axis: usize| {
             let along = along.as_ref().map_or(f64::INFINITY, |along| along[axis]);
             (along - within(axis) / (SAFETY_OF_SURROGATE * TUNING.beside_corner * slope)).max(0.0)

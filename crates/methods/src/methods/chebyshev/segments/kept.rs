@@ -1,4 +1,4 @@
-//! Polynomials between events that are kept after a run: outputs at any point of the box, in any row.
+//! Polynomials between events that are stored after a run: outputs at any point of the box, in any row.
 
 use super::at_row::RowMotion;
 use super::pieces::Pieces;

@@ -8,13 +8,13 @@
 //! - `piece`: a part of the box with its polynomials, `pieces`: all of them, `parts`: the samples in each;
 //! - `fitting`: polynomials by least squares, and `sampling`: the samples that these need;
 //! - `growth`: the terms of polynomials of many parameters;
-//! - `kept`: all of them, kept after the run;
+//! - `kept`: all of them, stored after the run;
 //! - `of_part`: a number that motions have in a part of the box only;
 //! - `at_row`: motions at a row's time, on branches of segments that go on a little beyond their events;
 //! - `row`: the outputs at a time, and how far the polynomials' errors move them;
 //! - `seeds`: where a range is searched for, and `climb`: the search within the part of the box that is in a segment,
 //!   and on its surfaces; `ridges`: where it ends early; `extremes`: the `ends` that it finds;
-//! - `held`: how far other places may pass a corner, however the polynomials err.
+//! - `held`: how far values elsewhere may be beyond a corner, however the polynomials err.
 
 mod at_row;
 mod basis;
@@ -165,9 +165,9 @@ fn excess(result: &MethodResult, goal: &Goal) -> f64 {
     largest(result.surrogate.iter().zip(&goal.outputs).map(of_output))
 }
 
-/// Bounds that tell how far those of a scan are off, where the ensemble's motions are cut at events: across events
-/// differences of a scan's samples tell nothing of the motions between them. They take no more samples than the scan;
-/// of few parameters at least those of the first degree.
+/// Bounds that estimate the error of a scan's, if the ensemble's motions are cut at events: across events differences
+/// of a scan's samples say nothing of the motions between them. They take no more samples than the scan; of few
+/// parameters at least those of the first degree.
 ///
 /// # Errors
 /// Where a sample cannot be assembled, or a closure not be compiled, and at an interruption.
@@ -224,7 +224,7 @@ struct Composed {
 }
 
 impl Composed {
-    /// The result of `simulations` simulations and those of the pieces; the polynomials are kept for statistics.
+    /// The result of `simulations` simulations and those of the pieces; the polynomials are stored for statistics.
     fn finished(self, ensemble: &dyn Ensemble, simulations: usize, pieces: Pieces, keep: Keep) -> MethodResult {
         let simulations = simulations + pieces.added;
         let keeps = keep == Keep::Statistics;
@@ -322,7 +322,7 @@ fn composed(
     let mut found: Vec<Vec<Estimate>> =
         (0..ensemble.rows()).into_par_iter().map(known).collect::<Result<_, EnsembleError>>()?;
     if pieces.all.len() > 1 {
-        // Beside a surface samples may miss an error in one row, and tell it in the next.
+        // Next to a surface samples may miss an error in one row, and show it in the next.
         for output in 0..ensemble.outputs() {
             let errors: Vec<f64> = found.iter().map(|row| row[output].error).collect();
             found.iter_mut().zip(held_beside(&errors)).for_each(|(row, error)| row[output].error = error);
@@ -344,8 +344,8 @@ fn composed(
     Ok(Composed { bands, simulated, rows, motions, worst })
 }
 
-/// An error as a share of its row's width, which is none to speak of below a share of the output's span; none where it
-/// is not known.
+/// An error as a share of its row's width, or of a share of the output's span if that is larger; zero if the error is
+/// unknown.
 fn share(estimate: &Estimate, span: f64) -> f64 {
     let share = SAFETY_OF_SURROGATE * estimate.error / estimate.range.width().max(TUNING.narrow_row * span);
     if share.is_finite() { share } else { 0.0 }

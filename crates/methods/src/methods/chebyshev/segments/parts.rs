@@ -26,7 +26,7 @@ struct Limit {
 }
 
 impl Samples {
-    /// The surfaces between words, as far as samples tell.
+    /// The surfaces between words, estimated from the samples.
     pub fn levels(&self) -> Vec<Option<Level>> {
         let of = |values: &Vec<f64>| {
             let all = self.xi.iter().map(Vec::as_slice).zip(values.iter().copied());
@@ -35,9 +35,9 @@ impl Samples {
         self.motions.boundaries.iter().map(|boundary| of(&boundary.values)).collect()
     }
 
-    /// Places, among the samples of its word, of those in a part.
+    /// Indices, among the samples of its word, of those in a part.
     pub fn places(&self, part: &WordPart, levels: &[Option<Level>]) -> Vec<usize> {
-        // On which side of a boundary a sample is, its word tells.
+        // A sample's word determines its side of a boundary.
         let layers =
             WordPart { limits: part.limits.iter().filter(|limit| limit.offset != 0.0).copied().collect(), ..*part };
         let ends = layers.ends(levels);
@@ -74,7 +74,7 @@ impl WordPart {
         own.filter_map(|limit| levels[limit.boundary].clone()).collect()
     }
 
-    /// The layer beside the first surface that it is behind, and the rest; `None` where it touches none.
+    /// The layer next to the first surface that it is behind, and the rest; `None` if it touches none.
     pub fn layers(&self, levels: &[Option<Level>], xi: &[Vec<f64>]) -> Option<[Self; 2]> {
         let touches = |limit: &&Limit| limit.sign < 0.0 && limit.offset == 0.0;
         let boundary = self.limits.iter().find(touches)?.boundary;

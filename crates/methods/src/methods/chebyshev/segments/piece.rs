@@ -8,7 +8,7 @@ use crate::numerics::SegmentMotions;
 #[derive(Clone, Debug)]
 pub(super) struct Piece {
     pub surrogate: SegmentSurrogate,
-    /// Of all samples; then of those that are deeper behind all surfaces, as far as these are enough.
+    /// Errors from all samples; then from those that are deeper behind all surfaces, if these are enough.
     told: Vec<Told>,
     /// ξ of its samples.
     pub samples: Vec<Vec<f64>>,
@@ -17,13 +17,13 @@ pub(super) struct Piece {
     pub motions: PieceMotions,
 }
 
-/// Errors with the samples that tell them.
+/// Errors with the samples that determine them.
 #[derive(Clone, Debug)]
 pub(super) struct Told {
     /// Share of the depth from which on they hold.
     limit: f64,
     errors: SegmentErrors,
-    /// Places among the samples of the fit, and among those that are held out.
+    /// Indices among the samples of the fit, and among those that are held out.
     pub fitted: Vec<usize>,
     pub held_out: Vec<usize>,
 }
@@ -31,7 +31,7 @@ pub(super) struct Told {
 /// Motions of a part's samples.
 #[derive(Clone, Debug, Default)]
 pub(super) struct PieceMotions {
-    /// That polynomials go through, or are fitted to; of a jet, its own.
+    /// Motions that polynomials go through, or are fitted to; for a jet, its own.
     pub fitted: SegmentMotions,
     /// ξ of samples that are held out, and their motions.
     pub points: Vec<Vec<f64>>,
@@ -51,8 +51,8 @@ impl Piece {
         Self { surrogate, told, samples, depths: Vec::new(), motions }
     }
 
-    /// Of polynomials that were fitted to samples, with the errors of those, given what polynomials through all others
-    /// predict of each.
+    /// From polynomials that were fitted to samples, with their errors at these, given the predictions of each by
+    /// polynomials through all others.
     pub fn fitted(
         surrogate: SegmentSurrogate,
         samples: Vec<Vec<f64>>,
@@ -94,7 +94,7 @@ impl Piece {
         &self.told[0].errors
     }
 
-    /// Samples that tell errors: all, and then those that are deeper behind surfaces.
+    /// Errors with their samples: all, and then those that are deeper behind surfaces.
     pub fn told(&self) -> &[Told] {
         &self.told
     }
@@ -112,13 +112,13 @@ impl Piece {
         (!self.surrogate.is_layer()).then_some(degree * degree / least)
     }
 
-    /// Errors at a point: beside a surface they are larger than far behind it, so that only samples count which are
+    /// Errors at a point: next to a surface they are larger than far behind it, so that only samples count which are
     /// not several times nearer to it.
     pub fn errors_at(&self, point: &Point) -> &SegmentErrors {
         &self.told[self.told_at(point)].errors
     }
 
-    /// The number of the errors at a point.
+    /// Index of the errors at a point.
     pub fn told_at(&self, point: &Point) -> usize {
         let share = share_of_depth(&point.margins, &self.depths);
         self.told.iter().rposition(|told| told.limit <= TUNING.shallower * share).unwrap_or(0)

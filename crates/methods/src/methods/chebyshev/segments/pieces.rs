@@ -1,8 +1,8 @@
 //! The parts of the box in which motions meet the same events, each with polynomials of its own.
 //!
-//! Of a box of one word these go through the grid's samples. Else each word's are fitted to all samples in its part by
-//! least squares, of the degree at which samples that are left out are met best; samples are added where a part has
-//! few, and beside its surfaces.
+//! In a box of one word these go through the grid's samples. Else each word's are fitted to all samples in its part by
+//! least squares, of the degree with the smallest leave-one-out errors; samples are added where a part has few, and
+//! next to its surfaces.
 
 use symdiff::jet::JetSpace;
 
@@ -23,7 +23,7 @@ pub(super) struct Pieces {
     pub all: Vec<Piece>,
     /// Time from which motions of no word are met, s.
     pub known_to: f64,
-    /// Samples beside the grid's.
+    /// Samples in addition to the grid's.
     pub added: usize,
 }
 
@@ -67,9 +67,9 @@ impl Pieces {
         })
     }
 
-    /// From the jet of a box of one word, whose errors validation samples tell. Behind a surface on which an event is
-    /// grazed motions go with a root, which no jet follows: in boxes of several words polynomials are fitted, and where
-    /// the centre has no jet, too. `None` where motions are not cut.
+    /// From the jet of a box of one word, with errors at validation samples. Behind a surface on which an event is
+    /// grazed motions go with a root, which no jet follows: in boxes of several words polynomials are fitted, and if
+    /// the centre has no jet, too. `None` if motions are not cut.
     ///
     /// # Errors
     /// Where a sample cannot be assembled.
@@ -152,7 +152,7 @@ impl Pieces {
 fn of_jet(basis: Basis, ends: Vec<End>, jet: &SegmentMotions, xi: Vec<Vec<f64>>, motions: &SegmentMotions) -> Piece {
     let surrogate = SegmentSurrogate::new(basis, ends, jet, <[f64]>::to_vec).told_at(&xi);
     // From the start, which is known, errors grow. Behind events ends are farther from the centre of a jet than samples
-    // are: what one of them shows is said of all steps.
+    // are: the largest error of a segment counts in all of its steps.
     let errors = SegmentErrors::new(&surrogate, &xi, motions).of_segments_behind_events();
     let own = PieceMotions { fitted: jet.clone(), points: xi.clone(), held_out: motions.clone() };
     Piece::new(surrogate, errors, xi, own)

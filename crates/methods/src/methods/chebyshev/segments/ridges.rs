@@ -1,5 +1,5 @@
 //! Where climbs by linear programmes end early: on the narrow ridge of a contact, along a ridge that is curved, and
-//! beside a corner of the box along parameters that change next to nothing.
+//! next to a corner of the box along parameters that change next to nothing.
 
 use super::climb::{Climb, inward};
 use super::row::SegmentRow;
@@ -30,7 +30,7 @@ pub(super) fn extent(row: &SegmentRow, found: [Option<&Climb>; 2]) -> Extent {
     Extent::at(range, 0.0, [least, most].map(|climb| climb.point.xi.clone()))
 }
 
-/// Adds where quadratics go on from the best climbs: along a curved ridge linear programmes end early.
+/// Adds results of quadratics that go on from the best climbs: along a curved ridge linear programmes end early.
 fn polish(row: &SegmentRow, climbs: &mut Vec<Climb>) {
     let known: Vec<Extent> = (0..row.outputs).map(|output| extent(row, best(climbs, output))).collect();
     let polished = extremes_from(&known, |points| {
@@ -94,7 +94,7 @@ fn across(row: &SegmentRow, climbs: &mut [Climb], share: f64) {
     let vertex = |((climb, way), pair): ((&Climb, &Vec<f64>), &[f64])| {
         let (below, above) = (pair[0] - climb.sign * climb.value, pair[1] - climb.sign * climb.value);
         let by = 0.5 * (below - above) / (below + above);
-        // A point that is not known leaves the climb where it is.
+        // An unknown point leaves the climb where it is.
         let by = if below + above < 0.0 { by.clamp(-1.0, 1.0) } else { 0.0 };
         along(climb, way, by)
     };

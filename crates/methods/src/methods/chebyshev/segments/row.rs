@@ -15,7 +15,7 @@ pub(super) struct SegmentRow<'r> {
     /// Number of outputs.
     pub outputs: usize,
     pub piece: &'r Piece,
-    /// The part's motion at the row's time, where it is expanded then.
+    /// The part's motion at the row's time, if it is expanded there.
     pub motion: Option<&'r RowMotion>,
     pub closure: &'r dyn Closure,
     /// s
@@ -28,7 +28,7 @@ pub(super) struct BoxRow<'r> {
     /// Number of outputs.
     pub outputs: usize,
     pub pieces: &'r Pieces,
-    /// Of each part.
+    /// Motions of each part.
     pub motions: &'r [RowMotion],
     pub closure: &'r dyn Closure,
     /// s
@@ -98,11 +98,11 @@ impl SegmentRow<'_> {
     }
 
     /// How far the polynomials' errors move outputs `here` at points (output, point), which are ends of a range, each
-    /// in the segment in which its value was taken: there an event that is near may have been already, or not yet, each
-    /// line may be off by its own error, and a surface beside it by its.
+    /// in the segment in which its value was taken: there an event nearby may have been already, or not yet, each line
+    /// may be off by its own error, and a surface nearby by its.
     ///
     /// Lines have errors at times and at shares of their segment. Either is enough: within a contact, where a late
-    /// instant makes a line late, an end at some share is found at that share beside it.
+    /// instant makes a line late, an end at some share is found at that share nearby.
     pub fn errors(&self, places: &[(usize, Point)], here: &[f64]) -> Vec<f64> {
         let surrogate = &self.piece.surrogate;
         let count = places.len();
@@ -174,8 +174,8 @@ impl SegmentRow<'_> {
         moved
     }
 
-    /// How far outputs at points (output, point) differ from those at the same share of the segment, as far beside as
-    /// the errors of its instants move that share; unknown where the box ends before.
+    /// How far outputs at points (output, point) differ from those nearby at the same share of the segment, as far away
+    /// as the errors of its instants move that share; unknown where the box ends before.
     fn along(&self, places: &[(usize, Point)], here: &[f64]) -> Vec<f64> {
         let surrogate = &self.piece.surrogate;
         let count = places.len();
@@ -222,7 +222,7 @@ impl SegmentRow<'_> {
         (0..here.len()).map(|index| largest(both.iter().map(|values| values[index] - here[index]))).collect()
     }
 
-    /// Points that are beside a surface, moved across it as far as its error is.
+    /// The points, of which those near a surface are moved across it by its error.
     fn beside(&self, places: &[(usize, Point)], end: usize, sign: f64) -> Vec<Point> {
         let surface = &self.piece.surrogate.ends[end];
         let across = |point: &Point| {

@@ -1,4 +1,4 @@
-//! Samples that fits in the parts of a box need: enough of them, some beside surfaces, and none far outside of the
+//! Samples that fits in the parts of a box need: enough of them, some next to surfaces, and none far outside of the
 //! others.
 
 use super::basis::{End, Fitted};
@@ -38,7 +38,7 @@ impl Fitting<'_> {
             else {
                 break;
             };
-            // Those beside it are covered with it.
+            // Points near it are covered with it.
             all.retain(|other| leverage(other) < 0.5 * worst || distance(other, &xi) > TUNING.covering_apart);
             all.retain(|other| *other != xi);
             found.push(xi);
@@ -47,12 +47,12 @@ impl Fitting<'_> {
     }
 
     /// Points just behind surfaces on which an event is grazed: a contact that is entered slowly ends otherwise than a
-    /// faster one, and polynomials through samples that are farther behind tell the faster one's end.
+    /// faster one, and polynomials through samples that are farther behind predict the faster one's end.
     pub(super) fn grazing(&self, parts: &[WordPart]) -> Vec<Vec<f64>> {
         let levels = self.samples.levels();
         let xi = &self.samples.xi;
         let k = xi.first().map_or(0, Vec::len);
-        // Of one parameter the surface is a point: copies of a sample would hide its error.
+        // With one parameter the surface is a point: copies of a sample would hide its error.
         let count = 1 + TUNING.grazing_samples * k.saturating_sub(1);
         let of_part = |part: &WordPart| {
             let ends = part.ends(&levels);
@@ -91,7 +91,7 @@ impl Fitting<'_> {
             let terms = Fitted::new(self.degree, &depths, xi).len();
             let lacks = ((TUNING.samples_a_term * terms as f64) as usize + 2).saturating_sub(inside.len());
             let fits = |point: &Vec<f64>| ends.iter().all(|end| end.margin(point) >= 0.0) && !xi.contains(point);
-            // Those beside a surface, and of layers, on lines across it.
+            // Points near a surface, and those in layers, are on lines across it.
             let is_layer = ends.iter().any(End::is_far);
             let touches = ends.iter().any(|end| end.sign < 0.0 && end.offset == 0.0);
             let beside = if is_layer || touches { lacks } else { lacks / TUNING.beside_surface };
@@ -113,7 +113,7 @@ impl Fitting<'_> {
             let others = of_box.iter().filter(|point| fits(point)).cloned();
             own.extend(others.take(lacks - own.len().min(lacks)));
             if own.is_empty() && lacks > 0 && !is_layer {
-                // The surface that the samples tell leaves the part out: there are too few beside it.
+                // The surface that the samples give excludes the part: there are too few next to it.
                 own.extend(about(&of_word, lacks));
             }
             wanted.extend(own);

@@ -15,7 +15,7 @@ pub(super) struct Lattice {
 }
 
 impl Lattice {
-    /// With `others` beside the lattice's own points.
+    /// With `others` in addition to the lattice's own points.
     pub fn new(surrogate: &SegmentSurrogate, others: &[Vec<f64>], k: usize) -> Self {
         let Some(&intervals) = TUNING.intervals.get(k.saturating_sub(1)) else {
             let xi = [&corners(k, TUNING.corners_of_lattice)[..], &spread(k, TUNING.spread_a_parameter * k), others]
@@ -85,7 +85,7 @@ impl Lattice {
             self.edges.iter().copied().filter(|&(a, b)| distances[a] * distances[b] < 0.0).collect();
         let every = crossed.len().div_ceil(TUNING.most_on_surface).max(1);
         let edges: Vec<(usize, usize)> = crossed.into_iter().step_by(every).collect();
-        // The last two places along each edge, with the distances there: the secant method.
+        // The last two shares along each edge, with the distances there: the secant method.
         let mut last: Vec<[(f64, f64); 2]> =
             edges.iter().map(|&(a, b)| [(0.0, distances[a]), (1.0, distances[b])]).collect();
         let mut found = Vec::new();
@@ -108,7 +108,7 @@ impl Lattice {
     }
 }
 
-/// Shares of a line, which gives the place at each, between which it is inside of all surfaces that end a part.
+/// Intervals of the shares of a line inside of all surfaces that end a part; `at` gives the point at a share.
 fn inside_shares(all: &[End], at: impl Fn(f64) -> Vec<f64>) -> Vec<[f64; 2]> {
     // A little inside.
     let margins = |share: f64| -> Vec<f64> {
@@ -122,7 +122,7 @@ fn inside_shares(all: &[End], at: impl Fn(f64) -> Vec<f64>) -> Vec<[f64; 2]> {
     let mut found: Vec<[f64; 2]> = Vec::new();
     for (ends, of_ends) in shares.windows(2).zip(of_shares.windows(2)) {
         let crosses = |end: &usize| (of_ends[0][*end] >= 0.0) != (of_ends[1][*end] >= 0.0);
-        // Each as the last places on its inside.
+        // Each crossing is the last share on its inside.
         let crossing = |end: usize| {
             let (mut inside, mut outside) = (ends[0], ends[1]);
             if of_ends[0][end] < 0.0 {

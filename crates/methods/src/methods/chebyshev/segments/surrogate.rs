@@ -17,9 +17,9 @@ pub(super) struct SegmentSurrogate {
     /// Coefficients of each of the 2n lines, by segment and node.
     nodes: Vec<Vec<Vec<f64>>>,
     lines: usize,
-    /// By what coefficients were fitted, where they were.
+    /// Fit of the coefficients, if they were fitted.
     squares: Option<LeastSquares>,
-    /// Of a jet, distance from its centre along each axis, at most, of samples that tell its errors.
+    /// For a jet, the largest distance from its centre, along each axis, of the samples that give its errors.
     reach: Vec<f64>,
 }
 
@@ -43,14 +43,14 @@ pub(super) struct Point {
     pub margins: Vec<f64>,
 }
 
-/// Largest errors at validation samples, or what the polynomials lack.
+/// Largest errors at validation samples, or of truncation.
 #[derive(Clone, Debug)]
 pub(super) struct SegmentErrors {
-    /// Of the instants, s.
+    /// Errors of the instants, s.
     pub times: Vec<f64>,
-    /// Of each line at a time, by segment and step.
+    /// Errors of each line at a time, by segment and step.
     pub lines: Vec<Vec<Vec<f64>>>,
-    /// Of each line at a share of its segment, by segment and step.
+    /// Errors of each line at a share of its segment, by segment and step.
     pub shares: Vec<Vec<Vec<f64>>>,
 }
 
@@ -75,7 +75,7 @@ fn share_of_node(steps: &[f64], node: usize) -> f64 {
     begin + (steps[step] - begin) * step_nodes()[node - step * (STEP_NODES - 1)]
 }
 
-/// Largest error of a line in a step and beside it.
+/// Largest error of a line in a step and its neighbours.
 fn beside_step(steps: &[Vec<f64>], step: usize, line: usize) -> f64 {
     largest(steps.iter().take(step + 2).skip(step.saturating_sub(1)).map(|errors| errors[line]))
 }
@@ -85,7 +85,7 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 }
 
 impl SegmentSurrogate {
-    /// From what gives the coefficients of values at the motions' samples, line by line.
+    /// From a function that gives the coefficients of values at the motions' samples, line by line.
     pub fn new(
         basis: Basis,
         ends: Vec<End>,
@@ -104,7 +104,7 @@ impl SegmentSurrogate {
         Self { squares: Some(squares), ..self }
     }
 
-    /// The same, a jet whose errors are told at these samples.
+    /// The same with the samples that give the errors of a jet.
     pub fn told_at(self, xi: &[Vec<f64>]) -> Self {
         let Basis::Taylor { centre, .. } = &self.basis else { return self };
         let of_axis = |(axis, centre): (usize, &f64)| largest(xi.iter().map(|xi| xi[axis] - centre));
@@ -166,7 +166,7 @@ impl SegmentSurrogate {
         self.lines
     }
 
-    /// By what coefficients were fitted, where they were.
+    /// Fit of the coefficients, if they were fitted.
     pub fn squares(&self) -> Option<&LeastSquares> {
         self.squares.as_ref()
     }
@@ -176,7 +176,7 @@ impl SegmentSurrogate {
         matches!(self.basis, Basis::Taylor { .. })
     }
 
-    /// Size of the terms that coefficients lack, as far as these tell.
+    /// Size of the terms beyond the coefficients, estimated from these.
     pub fn truncation(&self, coefficients: &[f64]) -> f64 {
         self.basis.truncation(coefficients)
     }
@@ -302,9 +302,9 @@ impl SegmentErrors {
         Self::between(direct, &predicted).or(&Self { times, shares: lines.clone(), lines })
     }
 
-    /// Of motions that are predicted. Lines are compared at the times of the direct nodes: where an instant is late,
-    /// the motion at the same share of the segment is that of a later time. Where most of a segment is predicted, times
-    /// at which another one is say nothing of this one: there a row is in that one, and the instants' errors tell.
+    /// Errors of predicted motions. Lines are compared at the times of the direct nodes: where an instant is late, the
+    /// motion at the same share of the segment is that of a later time. If most of a segment is predicted, times in
+    /// another one say nothing of this one: there a row is in that one, and the instants' errors count.
     pub fn between(direct: &SegmentMotions, predicted: &SegmentMotions) -> Self {
         let count = direct.samples.len();
         let difference = |(own, values): (&Vec<f64>, &Vec<f64>)| largest(own.iter().zip(values).map(|(a, b)| a - b));
@@ -376,7 +376,7 @@ impl SegmentErrors {
         self
     }
 
-    /// Of a line in a step of a segment and beside it.
+    /// Error of a line in a step of a segment and its neighbours.
     pub fn of_line(&self, segment: usize, step: usize, line: usize) -> f64 {
         beside_step(&self.lines[segment], step, line)
     }

@@ -47,7 +47,7 @@ tuning! {
         layers: usize = 3, moves "Chebyshev bounds through events";
         /// Rounds in which points that are far outside of samples are added.
         coverings: usize = 6, moves "Chebyshev bounds through events";
-        /// A polynomial does that misses samples that are left out by no more than this share of how far they range.
+        /// A polynomial suffices whose leave-one-out errors are no more than this share of the values' range.
         enough: f64 = 1e-3, moves "Chebyshev bounds through events";
         /// Values that differ by this share of how large they are anywhere in the motion are the same.
         rounding: f64 = 1e-9, moves "Chebyshev bounds through events";
@@ -57,7 +57,7 @@ tuning! {
         highest_degree: u8 = 12, moves "Chebyshev bounds through events";
         /// Most terms of a polynomial of many parameters.
         most_terms: usize = 1000, moves "Chebyshev bounds through events";
-        /// Rate at which coefficients fall at least, where two of an axis tell less.
+        /// Largest ratio of successive coefficients of an axis, if two of them give more.
         slowest_fall: f64 = 0.9, moves "Chebyshev bounds through events";
         /// Degrees that are tried to a tolerance.
         degrees: [usize; 6] = [2, 3, 4, 6, 8, 12], moves "Chebyshev bounds through events";
@@ -66,7 +66,7 @@ tuning! {
         /// Rows of many parameters are bounded again if the polynomials' error is at most this multiple of one that
         /// meets a goal.
         likely: f64 = 2.0, moves "Chebyshev bounds through events";
-        /// A layer reaches to this share of the depth of the part that it is cut off from: beside the surface
+        /// A layer reaches to this share of the depth of the part that it is cut off from: next to the surface
         /// everything goes with the root of the depth.
         layer: f64 = 1.0 / 150.0, moves "Chebyshev bounds through events";
         /// Least total degree in a part.
@@ -75,15 +75,15 @@ tuning! {
         degrees_of_part: [usize; 4] = [8, 5, 3, 2], moves "Chebyshev bounds through events";
         /// Samples for each parameter that show the parts of instants.
         samples_of_parts: usize = 24, moves "Chebyshev bounds through events";
-        /// Points spread over the box that tell the share of it in which an event occurs.
+        /// Points spread over the box that give the share of it in which an event occurs.
         points_of_share: usize = 1 << 14, moves "shares of the box";
         /// Factor on the share of a volume that such points are expected to miss.
         missed_share: f64 = 2.0, moves "shares of the box";
         /// Difference by which slopes of surfaces are taken.
         step_of_surfaces: f64 = 1e-6, moves "errors of Chebyshev bounds through events";
-        /// An end beside a surface is moved with it where it is nearer than this multiple of the surface's error.
+        /// An end near a surface is moved with it if it is nearer than this multiple of the surface's error.
         near_end: f64 = 2.0, moves "errors of Chebyshev bounds through events";
-        /// Shares of the depth of a part from which on samples tell errors of their own.
+        /// Shares of the depth of a part from which on samples give errors of their own.
         depths_of_errors: [f64; 2] = [1.0 / 32.0, 1.0 / 8.0], moves "errors of Chebyshev bounds through events";
         /// Samples count for errors at a point that are at this share of its depth, or deeper.
         shallower: f64 = 0.5, moves "errors of Chebyshev bounds through events";
@@ -97,26 +97,27 @@ tuning! {
         narrow_row: f64 = 0.01, moves "Taylor bounds through events";
         /// Halvings of jets, at most.
         halvings_of_jets: usize = 3, moves "Taylor bounds through events";
-        /// Samples for each parameter that tell the errors of a half, beside its corners.
+        /// Samples for each parameter that give the errors of a half, in addition to its corners.
         samples_of_halves: usize = 12, moves "Taylor bounds through events";
         /// Candidates of each round in which samples are added.
         candidates: usize = 512, moves "Chebyshev bounds through events";
         /// Corners of the box among the candidates for samples.
         corners: usize = 16, moves "Chebyshev bounds through events";
-        /// Points beside a surface are inside of it by this share of the depth: a motion that only just grazes cannot
+        /// Points next to a surface are inside of it by this share of the depth: a motion that only just grazes cannot
         /// be cut.
         inside_surface: f64 = 1e-6, moves "Chebyshev bounds through events";
-        /// Shares of the depth of a part at which it has samples beside the surface: within less than others are apart,
-        /// motions may differ from those that polynomials tell.
+        /// Shares of the depth of a part at which it has samples next to the surface: within less than the distance of
+        /// others, motions may differ from the polynomials' prediction.
         grazing_shares: [f64; 3] = [1e-4, 1e-6, 1e-8], moves "Chebyshev bounds through events";
         /// Further samples at each of these depths for each dimension of the surface.
         grazing_samples: usize = 8, moves "Chebyshev bounds through events";
         /// Least distance of samples from a surface, as a multiple of its error, within which they may be on its other
         /// side.
         beyond_error: f64 = 2.0, moves "Chebyshev bounds through events";
-        /// Halvings of a line on which a level is looked for.
+        /// Halvings of a line on which a level is searched for.
         halvings_of_line: usize = 40, moves "Chebyshev bounds through events";
-        /// Of the samples that a part lacks on the side of a surface without the event, one in this many is beside it.
+        /// One in this many samples that a part lacks on the side of a surface without the event is next to the
+        /// surface.
         beside_surface: usize = 3, moves "Chebyshev bounds through events";
         /// Largest leverage of a fit at a point outside of the samples: the square of its error there over the samples'
         /// error.
@@ -147,7 +148,7 @@ tuning! {
         beyond_longest: f64 = 2.0, moves "Chebyshev bounds through events";
         /// A part is between two events at a time that is this multiple of their instants' errors from both.
         safety_of_common: f64 = 2.0, moves "Chebyshev bounds through events";
-        /// Where so much of a segment is predicted, motions at times of other segments are not held against it.
+        /// If so much of a segment is predicted, motions at times of other segments are not compared with it.
         shared_segment: f64 = 0.5, moves "errors of Chebyshev bounds through events";
     }
 }
