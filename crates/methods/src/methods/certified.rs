@@ -15,7 +15,7 @@ use super::validation::Validation;
 use crate::certificate::{self, Piece};
 use crate::numerics::{ParameterBox, Range, RangeKind, TaylorRange};
 
-/// What bands are wider than their proof, relative to their width, to the size of the output, and to the radius.
+/// By how much bands are wider than their proof, relative to their width, to the size of the output, and to the radius.
 struct Room {
     width: f64,
     size: f64,
@@ -274,7 +274,7 @@ fn known(range: Range) -> Range {
     if range.lower.is_finite() && range.upper.is_finite() { range } else { Range::UNKNOWN }
 }
 
-/// What holds both; unknown where either is.
+/// The smallest range that contains both; unknown if either is.
 fn hull(a: Range, b: Range) -> Range {
     if a.lower.is_nan() || b.lower.is_nan() {
         return Range::UNKNOWN;

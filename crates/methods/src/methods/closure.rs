@@ -9,6 +9,6 @@ pub trait Closure: Sync {
     fn needs_velocities(&self) -> bool;
 
     /// Outputs (output, point) at `count` points, given their parameters (parameter, point) and motions (2n lines,
-    /// point); NaN where there is no solution near a motion.
+    /// point); NaN if no solution is near a motion.
     fn outputs(&self, time: f64, count: usize, parameters: Vec<f64>, motion: Vec<f64>) -> Vec<f64>;
 }

@@ -28,7 +28,7 @@ pub struct Interrupted;
 /// Simulations that one order of a jet counts as in progress reports.
 pub const JET_WORK: usize = TUNING.jet_work;
 
-/// Values kept of a simulation in each row.
+/// Values stored of a simulation in each row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Observed {
     /// The outputs.
@@ -49,7 +49,7 @@ pub enum Until {
 /// How samples are simulated.
 #[derive(Clone, Copy, Debug)]
 pub struct Sampling {
-    /// Values kept.
+    /// Stored values.
     pub observed: Observed,
     /// When to end.
     pub until: Until,
@@ -62,14 +62,14 @@ pub struct Sampling {
 pub enum StopCause {
     /// A step did not converge; the equation with the largest residual.
     NotConverged {
-        /// Of a step.
+        /// Equation with the largest residual.
         equation: EquationId,
     },
     /// A constraint cannot be fulfilled beyond this position.
     Locked {
         /// Which.
         constraint: ConstraintId,
-        /// What remains of it.
+        /// Residual that remains.
         residual: f64,
     },
     /// The sample goes on, but its jet does not: the Newton matrix is singular.
@@ -101,7 +101,7 @@ impl Stop {
     }
 }
 
-/// What simulations took.
+/// Effort of simulations.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Effort {
     /// Newton iterations.
@@ -117,14 +117,14 @@ impl std::ops::AddAssign for Effort {
     }
 }
 
-/// Surfaces that overlap more deeply than their contact can tell, or pass through one another.
+/// Surfaces that overlap more deeply than their contact allows, or pass through one another.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TooDeep {
     /// Name of the contact.
     pub contact: String,
     /// When, s.
     pub time: f64,
-    /// How deep, m; `None` where they pass through one another within a step.
+    /// How deep, m; `None` if they pass through one another within a step.
     pub depth: Option<f64>,
     /// How deep the contact may be, m.
     pub deepest: f64,
@@ -137,7 +137,7 @@ impl TooDeep {
     }
 }
 
-/// What came of samples that were simulated together.
+/// Outcome of samples that were simulated together.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Simulated {
     /// Their effort.
@@ -152,7 +152,7 @@ pub struct Simulated {
     pub stop: Option<(Stop, Sample)>,
     /// Numbers of all samples that stopped.
     pub stopped: Vec<usize>,
-    /// What outputs were reduced to, channel by channel, sample by sample; empty where they are not, and in a sum.
+    /// Reductions of outputs, channel by channel, sample by sample; empty if outputs are not reduced, and in a sum.
     pub reduced: Vec<f64>,
     /// Rows at the end that are not known.
     pub missing: usize,
@@ -266,8 +266,8 @@ pub trait Ensemble: Sync {
         reduce: &mut dyn FnMut(Rows<usize>, &[f64]),
     ) -> Result<Simulated, EnsembleError>;
 
-    /// Motions of samples at times that are dense enough to tell what lies between them: the times, and positions and
-    /// velocities (2n lines) in each, line by line, sample by sample. `None` where steps are too coarse for that.
+    /// Motions of samples at times that are dense enough to interpolate between them: the times, and positions and
+    /// velocities (2n lines) in each, line by line, sample by sample. `None` if steps are too coarse for that.
     ///
     /// # Errors
     /// Where a sample cannot be assembled.
@@ -286,7 +286,7 @@ pub trait Ensemble: Sync {
     }
 
     /// Taylor coefficients, about some ξ and in scaled parameters, of the motion that is cut at its events. They are
-    /// returned in place of samples' values, after the index of the word; `None` where motions are not cut.
+    /// returned instead of samples' values, after the index of the word; `None` if motions are not cut.
     ///
     /// # Errors
     /// Where the sample cannot be assembled.
@@ -310,13 +310,13 @@ pub trait Ensemble: Sync {
     /// Where the middle of the box cannot be assembled.
     fn jets(&self, space: &JetSpace, reduce: &mut dyn FnMut(Rows<usize>, &[f64])) -> Result<Simulated, EnsembleError>;
 
-    /// What prevents this proof, if something does.
+    /// Obstacle to this proof, if there is one.
     fn obstacle_to_enclosure(&self, proof: Proof) -> Option<String>;
 
     /// Encloses the outputs over a piece of the box; `row` gets one row after the other.
     fn enclose(&self, proof: Proof, space: &ModelSpace, piece: &ParameterBox, row: &mut EnclosedRow) -> EnclosureEnd;
 
-    /// A certificate of nothing yet, with the equations; `None` where there are none.
+    /// A certificate with the equations, without any piece yet; `None` without equations.
     fn certified(&self) -> Option<Certified> {
         None
     }

@@ -34,7 +34,7 @@ pub(super) struct Expansion<'r> {
     pub closure: &'r dyn Closure,
     /// s
     pub time: f64,
-    /// Of each of the 2n lines; what follows them is not looked at.
+    /// Coefficients of each of the 2n lines; further ones are ignored.
     pub coefficients: &'r [f64],
     /// Least and largest of each of the 2n lines over the samples.
     pub extent: &'r [(f64, f64)],
@@ -63,7 +63,7 @@ impl Expansion<'_> {
                 }
             }
         }
-        // Dependent coordinates are only a guess, and are kept within what the samples have.
+        // Dependent coordinates are only a guess, and are limited to the range of the samples.
         for (line, (values, &(low, high))) in motion.chunks_exact_mut(count.max(1)).zip(self.extent).enumerate() {
             if !self.closure.independent().contains(&(line % n)) && low <= high {
                 values.iter_mut().for_each(|value| *value = value.clamp(low, high));
@@ -73,7 +73,7 @@ impl Expansion<'_> {
         self.close(&all, motion)
     }
 
-    /// The first lines of the motion, as many lines of points as there is room for.
+    /// The first lines of the motion, as far as `motion` has room for them.
     pub fn expand<P: AsRef<[f64]>>(&self, points: &[P], motion: &mut [f64]) {
         let lines = motion.len() / points.len().max(1);
         let coefficients = &self.coefficients[..lines * self.basis.len()];
@@ -97,7 +97,8 @@ impl Expansion<'_> {
         for parameter in 0..k {
             let at = |point: &P| {
                 let xi = point.as_ref()[parameter];
-                // Coordinates go on beyond the box, and so do parameters: with those of its end, outputs had a kink.
+                // Coordinates go on beyond the box, and so do parameters: with those of its end, outputs would have a
+                // kink.
                 match xi.abs() <= 1.0 + TUNING.beyond_box {
                     true => self.domain.value(parameter, xi),
                     false => self.domain.midpoint(parameter) + self.domain.half_width(parameter) * xi,

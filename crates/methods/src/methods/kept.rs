@@ -1,4 +1,4 @@
-//! A surrogate that is kept after the run, to be evaluated at any point of the box: for statistics, verdicts and
+//! A surrogate that is stored after the run, to be evaluated at any point of the box: for statistics, verdicts and
 //! pictures.
 //!
 //! It is data: coefficients row by row, for each sub-box that the box was split into. An output is the polynomial
@@ -16,7 +16,7 @@ use crate::numerics::{ParameterBox, SparseBasis, SparseWork};
 #[derive(Clone, Debug, Default)]
 pub struct KeptSurrogate {
     boxes: Vec<KeptBox>,
-    /// In place of boxes, of motions that are cut at events.
+    /// Instead of boxes, for motions that are cut at events.
     pieces: Option<Arc<dyn CutSurrogate>>,
     /// By output and row; empty if nothing is known of them.
     errors: Vec<Vec<f64>>,
@@ -57,7 +57,7 @@ pub struct KeptRow {
     pub time: f64,
     /// The independent coordinates; none where only outputs are expanded.
     pub independent: Vec<usize>,
-    /// Of each of the 2n lines of the motion, then of each output.
+    /// Coefficients of each of the 2n lines of the motion, then of each output.
     pub coefficients: Vec<f64>,
     /// Least and largest of each of the 2n lines over the samples.
     pub extent: Vec<(f64, f64)>,
@@ -104,12 +104,13 @@ impl KeptSurrogate {
         Self { boxes, ..Self::default() }
     }
 
-    /// Of motions that are cut at events.
+    /// Surrogate of motions that are cut at events.
     pub(super) fn of_pieces(pieces: Arc<dyn CutSurrogate>) -> Self {
         Self { pieces: Some(pieces), ..Self::default() }
     }
 
-    /// With errors of its values, by output and row, that the method knows beside those at the validation samples.
+    /// Adds errors of its values, by output and row, that the method knows in addition to those at the validation
+    /// samples.
     pub fn with_errors(self, errors: Vec<Vec<f64>>) -> Self {
         Self { errors, ..self }
     }

@@ -1,8 +1,8 @@
-//! Bounding methods: what the outputs of an ensemble can be over a box of parameters.
+//! Bounding methods: ranges of the outputs of an ensemble over a box of parameters.
 //!
-//! Each method is one file (what can be asked of it, how it bounds, its label and colour) and one line below, from
-//! which follow the names on the command line, the order of bands in files, the legend of plots and
-//! `mbint explain --methods`. A method sees an [`Ensemble`] and knows neither mechanics nor who runs it.
+//! Each method is one file (its keys, how it bounds, its label and colour) and one line below, from which follow the
+//! names on the command line, the order of bands in files, the legend of plots and `mbint explain --methods`. A method
+//! sees an [`Ensemble`] and knows neither mechanics nor who runs it.
 
 mod closure;
 mod ensemble;

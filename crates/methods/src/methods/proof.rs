@@ -1,4 +1,4 @@
-//! What certified bounds prove, and what an ensemble hands over for it.
+//! Motions that certified bounds prove, and the data that an ensemble hands over for it.
 
 use symdiff::Interval;
 
@@ -33,8 +33,8 @@ impl Proof {
     }
 }
 
-/// Takes the Taylor models of a row's outputs, and within which each output is since the row before; nothing where that
-/// is not known.
+/// Takes the Taylor models of a row's outputs, and the intervals of the outputs since the row before; no intervals if
+/// these are not known.
 pub type EnclosedRow<'r> = dyn FnMut(&[f64], &[Interval]) + 'r;
 
 /// Why an enclosure ends before the last row.
@@ -46,9 +46,9 @@ pub struct Lost {
     pub why: String,
     /// Whether a smaller piece of the box may get further.
     pub is_too_wide: bool,
-    /// The parameter of which the piece is too wide, where that can be told.
+    /// The parameter of which the piece is too wide, if it is known.
     pub axis: Option<usize>,
-    /// What would help, for people.
+    /// A remedy, for people.
     pub help: String,
 }
 
@@ -57,7 +57,7 @@ pub struct Lost {
 pub struct EnclosureEnd {
     /// Why before the last row; at an interruption it just ends.
     pub lost: Option<Lost>,
-    /// The proof, for a certificate, where there is one.
+    /// The proof for a certificate, if there is one.
     pub piece: Option<Piece>,
 }
 

@@ -1,4 +1,4 @@
-//! What a bounding method is, and the list of them.
+//! Traits of bounding methods, and the list of methods.
 
 use std::fmt::Debug;
 
@@ -31,7 +31,7 @@ impl Refusal {
     }
 }
 
-/// What a curve of `mbint cost` varies.
+/// Quantity that a curve of `mbint cost` varies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Varied {
     /// The degree of a polynomial.
@@ -49,7 +49,7 @@ pub struct CostCurve {
     pub label: &'static str,
     /// Red, green and blue.
     pub color: [u8; 3],
-    /// What the counts are.
+    /// Meaning of the counts.
     pub varied: Varied,
     /// The counts that are tried.
     pub counts: &'static [usize],
@@ -83,7 +83,7 @@ impl Curve {
     }
 }
 
-/// What people see of a method.
+/// Description of a method for people.
 #[derive(Clone, Copy, Debug)]
 pub struct About {
     /// In legends.
@@ -103,11 +103,11 @@ pub struct About {
     pub is_sampled: bool,
     /// Whether it finds sensitivities.
     pub has_sensitivities: bool,
-    /// What `mbint cost` tries.
+    /// Curves of `mbint cost`.
     pub curves: &'static [CostCurve],
 }
 
-/// What the registry needs of a method.
+/// A method of the registry: its description and its default request.
 pub trait Registered: BoundingMethod + Sized {
     /// For people.
     const ABOUT: About;
@@ -142,8 +142,7 @@ pub trait BoundingMethod: Debug {
         self.samples().map_or(budget.simulations, |samples| samples as usize)
     }
 
-    /// Highest degree in a parameter of its surrogate; 0 where it has none, or where the degree follows from the
-    /// response.
+    /// Highest degree in a parameter of its surrogate; 0 if it has none, or if the degree follows from the response.
     fn degree(&self) -> usize {
         0
     }
@@ -188,12 +187,12 @@ macro_rules! methods {
                 match self { $(Self::$Type => stringify!($keyword),)* }
             }
 
-            /// The schema of what a file may ask of it; absent where only the command line asks for it.
+            /// The schema of its keys in a file; absent if only the command line asks for it.
             pub fn schema(self) -> Option<schemars::Schema> {
                 match self { $(Self::$Type => registry::schema!($($keys)?),)* }
             }
 
-            /// What people see of it.
+            /// Description for people.
             pub fn about(self) -> &'static $crate::methods::About {
                 match self { $(Self::$Type => &<$Type as $crate::methods::Registered>::ABOUT,)* }
             }
@@ -204,9 +203,9 @@ macro_rules! methods {
         pub struct BoundsRequest {
             /// Error allowed of every bound, relative to how far its output ranges over the run.
             pub tolerance: Option<f64>,
-            /// What may be spent on it.
+            /// Limits of simulations and time.
             pub budget: Budget,
-            /// Which surrogates are kept after the run.
+            /// Which surrogates are stored after the run.
             pub keep: $crate::methods::Keep,
             $($(#[doc = $doc])* pub $keyword: Option<$Type>,)*
         }
@@ -241,7 +240,7 @@ macro_rules! methods {
                 }
             }
 
-            /// Reads what a file asks of each method.
+            /// Reads the keys of each method in a file.
             fn read_methods<S: $crate::grammar::SymbolTable>(
                 &mut self,
                 reader: &mut $crate::grammar::Reader<'_, S>,
@@ -283,10 +282,10 @@ macro_rules! keys {
                 /// Which bounds to compute; a method that is not named is not run.
                 Bounds is "`bounds`" {
                     /// Error allowed of every bound, relative to how far its output ranges over the run. Chebyshev's
-                    /// degree (where it has no `order`) and the steps are then chosen to meet it; what misses it is
+                    /// degree (if it has no `order`) and the steps are then chosen to meet it; bounds that miss it are
                     /// flagged.
                     tolerance: Option<Number>,
-                    /// What may be spent on the tolerance.
+                    /// Simulations and time that may be spent on the tolerance.
                     budget: Option<request::keys::Budget>,
                     $($done)*
                 }

@@ -33,7 +33,7 @@ impl Default for Budget {
     }
 }
 
-/// Which surrogate is kept after the run.
+/// Which surrogate is stored after the run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Keep {
     /// None.
@@ -44,18 +44,19 @@ pub enum Keep {
     WholeBox,
     /// The same of reduced outputs and margins alone, of motions that may be cut at events.
     Margins,
-    /// One whose error is told by simulated products: polynomials through values and gradients, if ends were followed.
+    /// One whose error is estimated from simulated products: polynomials through values and gradients, if ends were
+    /// followed.
     Statistics,
 }
 
 impl Keep {
-    /// Whether one is kept.
+    /// Whether one is stored.
     pub fn is_any(self) -> bool {
         self != Self::Nothing
     }
 }
 
-/// What a method is asked to bound, before anything is simulated.
+/// The problem that a method is to bound, before anything is simulated.
 #[derive(Clone, Copy, Debug)]
 pub struct Problem {
     /// Number of uncertain parameters.
@@ -81,7 +82,7 @@ pub(super) fn pick(list: &mut Vec<usize>, kept: &[usize]) {
 }
 
 impl BoundsRequest {
-    /// What a model without the section gets.
+    /// The request of a model without the section.
     pub fn default_for(parameters: usize) -> Self {
         let mut request = Self::default();
         request.ask(Method::ALL[0], &unspecified(parameters, None));
@@ -106,7 +107,7 @@ impl BoundsRequest {
     }
 }
 
-/// Keys of `bounds:`; `certified` is none.
+/// Keys of `bounds:`, without `certified`.
 fn keys_of_bounds() -> &'static [&'static str] {
     <super::keys::Bounds as Grammar>::KEYS
 }
@@ -149,7 +150,7 @@ fn budget<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: &Fields) -> Budget
     budget
 }
 
-/// Reads `range`; tight where it is left out.
+/// Reads `range`; tight by default.
 pub(super) fn range<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: &Fields) -> Option<RangeKind> {
     fields.get("range").map_or(Some(RangeKind::Tight), |node| reader.choice(node, &RANGES))
 }
@@ -247,7 +248,7 @@ pub mod keys {
     }
 
     grammar! {
-        /// Where the search for bounds within the tolerance ends at the latest; its result by then is kept.
+        /// Limits at which the search for bounds within the tolerance ends at the latest, with its result by then.
         Budget is "`budget`" {
             /// Simulations; by default 3000.
             solves: Option<u32>,

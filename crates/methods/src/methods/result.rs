@@ -1,4 +1,4 @@
-//! What a method finds.
+//! Results of methods.
 
 use std::ops::Range as Rows;
 use std::sync::Arc;
@@ -20,7 +20,7 @@ pub struct MethodResult {
     pub between: Vec<Vec<Range>>,
     /// The surrogate's error, by output and row.
     pub surrogate: Vec<Vec<f64>>,
-    /// Whether that is told row by row at all samples, so that it says nothing of the rows behind.
+    /// Whether that error is known row by row at all samples, so that it says nothing of the rows behind.
     pub is_told_at_rows: bool,
     /// The time steps' error where the method knows it better than the validation samples' outputs do; else NaN.
     pub steps: Vec<Vec<f64>>,
@@ -38,11 +38,11 @@ pub struct MethodResult {
     pub boxes: Option<usize>,
     /// Outputs that in some row do not follow from the coordinates and were expanded themselves.
     pub expanded: Vec<usize>,
-    /// What came of the simulations.
+    /// Outcome of the simulations.
     pub simulated: Simulated,
-    /// The surrogate, where it is to be kept.
+    /// The surrogate, if it is to be stored.
     pub kept: Option<KeptSurrogate>,
-    /// The proof, where there is one.
+    /// The proof, if there is one.
     pub certified: Option<Arc<Certified>>,
 }
 
@@ -74,7 +74,7 @@ pub(super) struct PolynomialEstimate {
     pub at_validation: Vec<f64>,
     /// Where known.
     pub sensitivity: Option<Sensitivity>,
-    /// Of the polynomial, where they are to be kept.
+    /// Coefficients of the polynomial, if they are to be stored.
     pub coefficients: Vec<f64>,
 }
 
@@ -106,7 +106,7 @@ impl BandBuilder {
         self.surrogate[output][row] = surrogate;
     }
 
-    /// Sets what one output's spread in one row comes from.
+    /// Sets the sensitivity of one output in one row.
     pub fn set_sensitivity(&mut self, row: usize, output: usize, sensitivity: Option<Sensitivity>) {
         self.sensitivities[output][row] = sensitivity;
     }
@@ -138,7 +138,7 @@ impl BandBuilder {
         }
     }
 
-    /// All rows but those that are missing, and the surrogate, if it is to be kept, with its errors.
+    /// All rows but those that are missing, and the surrogate, if it is to be stored, with its errors.
     pub(super) fn finish_keeping(
         self,
         simulations: usize,

@@ -88,7 +88,7 @@ impl ValidationTable {
     }
 
     /// The part of a coordinate's error, by the first of the samples with halved steps, that is a shift in time in this
-    /// row; `None` where it is unknown.
+    /// row; `None` if it is unknown.
     pub fn time_shift(&self, halved: &Self, row: usize, coordinate: usize) -> Option<TimeShift> {
         let velocity = self.motions / 2 + coordinate;
         let window = TimeShift::window(row, self.rows().min(halved.rows()));
@@ -217,9 +217,9 @@ pub struct Validation {
     pub odd: OddSteps,
     /// Number of simulations.
     pub simulations: usize,
-    /// What all of them took.
+    /// Effort of all of them.
     pub effort: Effort,
-    /// What came of those with the schedule's steps.
+    /// Outcome of those with the schedule's steps.
     pub simulated: Simulated,
     /// Width of each output's range over all rows and samples; zero where it is constant.
     pub spans: Vec<f64>,
@@ -316,14 +316,14 @@ impl Validation {
         Self { points, spread: 0, ..self.clone() }
     }
 
-    /// Notes what the samples have been simulated to be with the schedule's steps.
+    /// Notes the samples' values simulated with the schedule's steps.
     pub fn note(&self, ledger: &Ledger) {
         let ValidationTable { motions, outputs, samples, values } = &self.direct;
         ledger.note(0, motions + outputs, *samples, values);
     }
 
-    /// What the error by halving is to be corrected by in each row, since three steps do not agree at order 2, or since
-    /// from some row on the equations switch inside steps.
+    /// Corrections of the error by halving in each row, since three steps do not agree at order 2, or since from some
+    /// row on the equations switch inside steps.
     pub fn corrections(&self, output: usize, rows: usize, switched_from: Option<usize>) -> Vec<Correction> {
         let of_row = |row: usize| {
             let (direct, halved) = (self.direct.at(row, output), self.halved.at(row, output));
