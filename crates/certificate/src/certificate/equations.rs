@@ -87,7 +87,7 @@ impl Node {
         a.into_iter().chain(b)
     }
 
-    /// As the file has it; `tables` are those of the file.
+    /// Text of the node in the file; `tables` are those of the file.
     pub(super) fn text(self, tables: &[Spline]) -> String {
         let name = |known: Option<&str>| known.unwrap_or("unknown").to_owned();
         match self {

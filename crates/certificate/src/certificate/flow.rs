@@ -1,4 +1,4 @@
-//! How distances of motions grow over a cell: e(τ) = Φ(τ) e(−1) + g(τ).
+//! Growth of distances between motions over a cell: e(τ) = Φ(τ) e(−1) + g(τ).
 
 use symdiff::taylor_model::{ModelSpace, up};
 

@@ -97,7 +97,7 @@ impl Models {
         self.values[row * length..][..length].iter_mut().for_each(|c| *c *= factor);
     }
 
-    /// Only the polynomials.
+    /// Removes the radii.
     pub fn without_radii(mut self) -> Self {
         self.values.chunks_exact_mut(self.size).for_each(|model| model[self.size - 1] = 0.0);
         self

@@ -93,6 +93,6 @@ pub struct ProvenCell {
     pub w: Vec<Vec<f64>>,
     /// The same of the multipliers, m.
     pub lambda: Vec<Vec<f64>>,
-    /// How far each position and velocity is from the integrals of `w` at most, 2n.
+    /// Largest distance of each position and velocity from the integrals of `w`, 2n.
     pub tube: Vec<f64>,
 }

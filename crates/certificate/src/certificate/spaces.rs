@@ -91,7 +91,7 @@ impl Space {
         Self { of_parameters, of_time, power, without_time, constant_in_time, raised, lowered, cell, box_of }
     }
 
-    /// Within which a model of (τ, ξ) is.
+    /// Range of a model of (τ, ξ).
     pub fn range(&self, model: &[f64]) -> Interval {
         let radius = model[model.len() - 1];
         let error = Interval::new(-radius, radius);

@@ -87,7 +87,7 @@ struct Enclosed {
     /// The same since the row before; empty where that is not known.
     between: Vec<Range>,
     lost: Option<Lost>,
-    /// For the certificate.
+    /// The proof for the certificate.
     proof: Option<Piece>,
     /// Number of ranges of the larger piece that it was cut from.
     before: Option<usize>,

@@ -51,7 +51,7 @@ pub enum Until {
 pub struct Sampling {
     /// Stored values.
     pub observed: Observed,
-    /// When to end.
+    /// End of the simulation.
     pub until: Until,
     /// Whether half of the rows are of no use: an interruption is an error.
     pub whole: bool,
@@ -67,7 +67,7 @@ pub enum StopCause {
     },
     /// A constraint cannot be fulfilled beyond this position.
     Locked {
-        /// Which.
+        /// The constraint.
         constraint: ConstraintId,
         /// Residual that remains.
         residual: f64,
@@ -159,7 +159,7 @@ pub struct Simulated {
 }
 
 impl Simulated {
-    /// After an interruption no row is known from this one on.
+    /// Counts the rows from this one on as missing after an interruption.
     pub fn end_at(&mut self, row: usize, ensemble: &dyn Ensemble) {
         if ensemble.is_interrupted() {
             self.missing = self.missing.max(ensemble.rows() - row);
@@ -232,8 +232,7 @@ pub trait Ensemble: Sync {
         Vec::new()
     }
 
-    /// From the least to the largest value of an output in a row that has been simulated so far, by whatever asked for
-    /// it; empty where that is not noted.
+    /// Range of an output in a row that has been simulated so far, by whatever asked for it; empty if it is not noted.
     fn seen(&self, _row: usize, _output: usize) -> Range {
         EMPTY
     }

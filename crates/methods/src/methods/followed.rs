@@ -4,7 +4,7 @@
 use super::kept::KeptSurrogate;
 use crate::numerics::Range;
 
-/// How an output's spread in one row comes about.
+/// Contributions of the parameters to an output's spread in one row.
 #[derive(Clone, Debug)]
 pub struct Sensitivity {
     /// First-order Sobol indices: each parameter's share of the variance, alone.
@@ -18,35 +18,35 @@ pub struct Sensitivity {
 /// An output's ends in one row.
 #[derive(Clone, Debug)]
 pub struct Followed {
-    /// Both are attained.
+    /// The range between both ends, which are attained.
     pub range: Range,
-    /// How far beyond them the output may go.
+    /// Largest distance of the output beyond them.
     pub error: f64,
-    /// Where known.
+    /// Sensitivity, if known.
     pub sensitivity: Option<Sensitivity>,
 }
 
 /// The ends of all outputs in all rows.
 #[derive(Clone, Debug)]
 pub struct FollowedEnds {
-    /// By row and output.
+    /// Ends by row and output.
     ends: Vec<Followed>,
-    /// Polynomials of the outputs over the whole box, where they are wanted and known.
+    /// Polynomials of the outputs over the whole box, if they are wanted and known.
     surrogate: Option<KeptSurrogate>,
 }
 
 impl FollowedEnds {
-    /// By row and output.
+    /// Followed ends, by row and output.
     pub fn new(ends: Vec<Followed>, surrogate: Option<KeptSurrogate>) -> Self {
         Self { ends, surrogate }
     }
 
-    /// Polynomials of the outputs over the whole box, where they are wanted and known.
+    /// Polynomials of the outputs over the whole box, if they are wanted and known.
     pub(super) fn surrogate(&self) -> Option<&KeptSurrogate> {
         self.surrogate.as_ref()
     }
 
-    /// By row and output.
+    /// Ends by row and output.
     pub(super) fn ends(&self) -> &[Followed] {
         &self.ends
     }

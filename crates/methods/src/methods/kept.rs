@@ -46,7 +46,7 @@ pub(super) struct CutRow {
 struct KeptBox {
     domain: ParameterBox,
     basis: SparseBasis,
-    /// Up to the first that a sample has not reached.
+    /// Rows up to the first that a sample has not reached.
     rows: Vec<KeptRow>,
 }
 
@@ -66,7 +66,7 @@ pub struct KeptRow {
 }
 
 impl KeptRow {
-    /// Where only the outputs are expanded: coefficients output by output.
+    /// A row of which only the outputs are expanded: coefficients output by output.
     pub fn of_outputs(time: f64, lines: &[&[f64]]) -> Self {
         let own = vec![true; lines.len()];
         Self { time, independent: Vec::new(), coefficients: lines.concat(), extent: Vec::new(), own }
@@ -98,7 +98,7 @@ impl KeptRow {
 }
 
 impl KeptSurrogate {
-    /// Over one box.
+    /// Surrogate over one box.
     pub fn of_box(domain: &ParameterBox, basis: &SparseBasis, rows: Vec<KeptRow>) -> Self {
         let boxes = vec![KeptBox { domain: domain.clone(), basis: basis.clone(), rows }];
         Self { boxes, ..Self::default() }

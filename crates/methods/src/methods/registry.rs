@@ -90,7 +90,7 @@ pub struct About {
     pub label: &'static str,
     /// Effect.
     pub summary: &'static str,
-    /// Where it is from.
+    /// Its source.
     pub source: &'static str,
     /// Red, green and blue. Colours differ for every colour vision and in grey.
     pub color: [u8; 3],
@@ -198,7 +198,7 @@ macro_rules! methods {
             }
         }
 
-        /// Which bounds are asked for; lists by parameter run over the uncertain parameters in file order.
+        /// The bounds that are asked for; lists by parameter run over the uncertain parameters in file order.
         #[derive(Clone, Debug, Default)]
         pub struct BoundsRequest {
             /// Error allowed of every bound, relative to how far its output ranges over the run.

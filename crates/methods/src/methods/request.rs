@@ -18,7 +18,7 @@ const RANGES: [(&str, RangeKind); 2] = [("tight", RangeKind::Tight), ("interval"
 /// Simulations that one method may ask for.
 pub const MOST_SIMULATIONS: f64 = TUNING.most_simulations;
 
-/// Where the search for bounds within a tolerance ends at the latest.
+/// Limits at which the search for bounds within a tolerance ends at the latest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Budget {
     /// Simulations.
@@ -42,7 +42,7 @@ pub enum Keep {
     /// One of the whole box, as exact as the bounds, which are of the same polynomials row by row, also of motions that
     /// are cut at events; beyond [`MOST_ON_GRIDS`](super::MOST_ON_GRIDS) parameters one as for statistics.
     WholeBox,
-    /// The same of reduced outputs and margins alone, of motions that may be cut at events.
+    /// The same for reduced outputs and margins alone, whose motions may be cut at events.
     Margins,
     /// One whose error is estimated from simulated products: polynomials through values and gradients, if ends were
     /// followed.

@@ -14,9 +14,9 @@ use crate::numerics::{Range, largest, surrogate_error};
 /// A method's bands of all outputs, their errors, and their cost.
 #[derive(Clone, Debug, Default)]
 pub struct MethodResult {
-    /// By output and row.
+    /// Ranges by output and row.
     pub bands: Vec<Vec<Range>>,
-    /// By output and row, within which the output is since the row before; empty of methods that do not know it.
+    /// Intervals of the output since the row before, by output and row; empty if the method does not know them.
     pub between: Vec<Vec<Range>>,
     /// The surrogate's error, by output and row.
     pub surrogate: Vec<Vec<f64>>,
@@ -24,7 +24,7 @@ pub struct MethodResult {
     pub is_told_at_rows: bool,
     /// The time steps' error where the method knows it better than the validation samples' outputs do; else NaN.
     pub steps: Vec<Vec<f64>>,
-    /// By output and row, where known.
+    /// Sensitivities by output and row, if known.
     pub sensitivities: Vec<Vec<Option<Sensitivity>>>,
     /// Rows in which something is known.
     pub reached: usize,
@@ -57,7 +57,7 @@ pub struct Estimate {
     pub of_search: f64,
     /// Error of the time steps; NaN where not asked for.
     pub step_error: f64,
-    /// Where asked for.
+    /// Sensitivities, if they are asked for.
     pub sensitivity: Option<Sensitivity>,
     /// Whether the output does not follow from the coordinates there and was expanded itself.
     pub is_expanded: bool,
@@ -72,7 +72,7 @@ pub(super) struct PolynomialEstimate {
     pub excess: f64,
     pub truncation: f64,
     pub at_validation: Vec<f64>,
-    /// Where known.
+    /// Sensitivities, if known.
     pub sensitivity: Option<Sensitivity>,
     /// Coefficients of the polynomial, if they are to be stored.
     pub coefficients: Vec<f64>,
@@ -89,7 +89,7 @@ pub struct BandBuilder {
 }
 
 impl BandBuilder {
-    /// For `outputs` outputs and `rows` rows, all unknown.
+    /// Bands of `outputs` outputs and `rows` rows, all unknown.
     pub fn new(outputs: usize, rows: usize) -> Self {
         Self {
             bands: vec![vec![Range::UNKNOWN; rows]; outputs],

@@ -22,7 +22,7 @@ tuning! {
         /// Error relative to the output's range that is aimed at where a degree is to be chosen and no tolerance is
         /// given.
         tolerance: f64 = 1e-3, moves "bounds of models that ask for no tolerance";
-        /// How much further a polynomial may be from a function with a kink than it is at validation samples: it is
+        /// Multiple of a polynomial's error at validation samples that it may have for a function with a kink: it is
         /// worst at the kink, and there they need not be.
         between_kinks: f64 = 3.0, moves "which bands are contradicted by values";
         /// Most points of a scan along an axis.

@@ -47,7 +47,7 @@ impl ValidationTable {
         Ok((Self { motions, outputs, samples: samples.len(), values }, simulated))
     }
 
-    /// These samples, and then others, in the rows that both have reached.
+    /// These samples, followed by others, in the rows that both have reached.
     pub fn with(&self, others: &Self) -> Self {
         let lines = self.values.chunks_exact(self.samples).zip(others.values.chunks_exact(others.samples));
         let values = lines.flat_map(|(own, others)| own.iter().chain(others).copied()).collect();
@@ -157,11 +157,11 @@ pub struct OddSteps {
 /// The validation samples of one box under one schedule, and the same with other steps.
 #[derive(Clone, Copy)]
 pub struct Ensembles<'e> {
-    /// With the schedule's steps.
+    /// The ensemble with the schedule's steps.
     pub direct: &'e dyn Ensemble,
-    /// With each step halved.
+    /// The ensemble with each step halved.
     pub halved: &'e dyn Ensemble,
-    /// With steps at odds with both,
+    /// The ensemble with steps at odds with both,
     pub odd: &'e dyn Ensemble,
     /// and their length over that of the schedule's.
     pub ratio: f64,
@@ -207,9 +207,9 @@ impl Ensembles<'_> {
 pub struct Validation {
     /// ξ of each.
     pub points: Vec<Vec<f64>>,
-    /// How many of them are spread over the box.
+    /// Number of them that are spread over the box.
     pub spread: usize,
-    /// With the schedule's steps.
+    /// Values with the schedule's steps.
     pub direct: ValidationTable,
     /// The first of them, with each step halved.
     pub halved: ValidationTable,
@@ -291,8 +291,8 @@ impl Validation {
         Ok(Self { points, spread, direct, halved, odd, simulations, effort, simulated, spans })
     }
 
-    /// Where nothing is uncertain: the nominal motion, of which `reached` rows are known, is the only sample, and is
-    /// simulated with each step halved.
+    /// Validation if nothing is uncertain: the nominal motion, of which `reached` rows are known, is the only sample,
+    /// and is simulated with each step halved.
     ///
     /// # Errors
     /// Where it cannot be assembled.

@@ -1,4 +1,4 @@
-//! How far a response may go beyond a sample and its neighbours along an axis.
+//! Excursions of a response beyond a sample and its neighbours along an axis.
 
 use super::tuning::TUNING;
 
@@ -8,8 +8,8 @@ pub(super) struct Along {
     values: [f64; 9],
     /// Second differences at all of them but the first and the last.
     bends: [f64; 7],
-    /// How many samples are known before and after, up to four: none beyond the axis' ends, and in another part of
-    /// the scan.
+    /// Numbers of known samples before and after, up to four: none beyond the axis' ends, and in another part of the
+    /// scan.
     before: usize,
     after: usize,
     /// Its number along the axis,

@@ -17,7 +17,7 @@ pub struct Linear {
     pub slopes: Vec<f64>,
 }
 
-/// In which power of the sizes constraints are linear.
+/// The power of the sizes in which constraints are linear.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Power {
     /// Worst cases add up sizes.
@@ -34,7 +34,7 @@ impl Power {
         }
     }
 
-    /// Where −c/f² = p s fᵖ⁻¹ for s < 0.
+    /// The size at which −c/f² = p s fᵖ⁻¹ for s < 0.
     fn stationary(self, cost: f64, slope: f64) -> f64 {
         match self {
             Self::First => (cost / -slope).sqrt(),
@@ -71,7 +71,7 @@ pub fn cheapest(
         let moved = |i: usize| constraint.slopes[i] * (power.of(sizes[i]) - power.of(at[i]));
         constraint.value + (0..sizes.len()).map(moved).sum::<f64>()
     };
-    // Where sizes do not matter, none makes a constraint hold: it counts for nothing.
+    // A constraint that smaller sizes do not help counts for nothing.
     let largest = |constraint: &Linear| {
         let enough = |i: usize| match constraint.slopes[i] {
             slope if slope < 0.0 => power.multiplier(costs[i], slope, least[i]),

@@ -14,7 +14,7 @@ pub struct ChebyshevBasis {
 }
 
 impl ChebyshevBasis {
-    /// With a degree and a number of nodes for each parameter.
+    /// The basis with a degree and a number of nodes for each parameter.
     ///
     /// # Panics
     /// If there are not more nodes than the degree: the highest polynomial would be zero, or an alias, on the nodes.
@@ -32,7 +32,7 @@ impl ChebyshevBasis {
         Self { nodes: nodes.to_vec(), quadrature }
     }
 
-    /// Where the response is needed, in the order in which [`coefficients`](Self::coefficients) takes it.
+    /// Samples at which the response is needed, in the order in which [`coefficients`](Self::coefficients) takes it.
     pub fn grid(&self) -> TensorGrid {
         TensorGrid::chebyshev_zeros(&self.nodes)
     }

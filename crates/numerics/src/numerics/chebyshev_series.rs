@@ -26,7 +26,7 @@ impl ChebyshevSeries {
         (0..=degree).map(at).collect()
     }
 
-    /// Through values at [`nodes`](Self::nodes), at least two.
+    /// The series through values at [`nodes`](Self::nodes), at least two.
     pub fn through(span: [f64; 2], values: &[f64]) -> Self {
         let degree = values.len() - 1;
         let half = |index: usize| if index == 0 || index == degree { 0.5 } else { 1.0 };
@@ -41,8 +41,8 @@ impl ChebyshevSeries {
         Self { span, coefficients: (0..=degree).map(coefficient).collect() }
     }
 
-    /// For each function the series of this degree that is nearest to its values at times within the span, in the sense
-    /// of least squares; `None` where they do not determine it.
+    /// The series of this degree nearest to each function's values at times within the span, by least squares; `None`
+    /// if the times do not determine it.
     pub fn fitted(span: [f64; 2], degree: usize, times: &[f64], functions: &[Vec<f64>]) -> Option<Vec<Self>> {
         let terms: Vec<Vec<f64>> = times.iter().map(|&time| polynomials(scaled(span, time), degree)).collect();
         let squares = LeastSquares::new(&terms, vec![1.0; times.len()])?;
@@ -91,7 +91,7 @@ impl ChebyshevSeries {
         last.iter().fold(0.0, |most: f64, own| most.max(own.abs()))
     }
 
-    /// Without the last coefficients that do not exceed `least`; the constant stays.
+    /// Removes the last coefficients that do not exceed `least`; the constant stays.
     #[must_use]
     pub fn chopped(mut self, least: f64) -> Self {
         let kept = self.coefficients.iter().rposition(|own| own.abs() > least).map_or(1, |last| last + 1);

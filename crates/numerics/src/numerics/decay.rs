@@ -36,7 +36,7 @@ pub fn truncation(basis: &SparseBasis, coefficients: &[f64]) -> f64 {
     basis.front().filter_map(beyond).sum::<f64>().sqrt()
 }
 
-/// How the coefficients end along an axis.
+/// Decay of the coefficients along an axis.
 struct Tail {
     /// Size of those of the highest degree,
     last: f64,

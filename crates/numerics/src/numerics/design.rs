@@ -78,7 +78,7 @@ const BITS: u32 = 32;
 /// Most axes of Sobol's sequence.
 pub const MOST_AXES: usize = DIRECTIONS.len() + 1;
 
-/// How points are chosen.
+/// Choice of points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Design {
     /// Sobol's sequence from its first point on, without scrambling; up to 2³² points along up to [`MOST_AXES`] axes.
@@ -151,14 +151,14 @@ fn mixed(counter: u64) -> u64 {
     z ^ (z >> 31)
 }
 
-/// In [0, 1).
+/// A number in [0, 1).
 fn uniform(bits: u64) -> f64 {
     (bits >> 11) as f64 / (1_u64 << 53) as f64
 }
 
-/// Where a random permutation of 0 … count − 1 has a number, without a table: a Feistel network on the next even power
-/// of two, walked until it is back among the numbers (J. Black & P. Rogaway, Ciphers with arbitrary finite domains,
-/// 2002).
+/// The image of a number under a random permutation of 0 … count − 1, without a table: a Feistel network on the next
+/// even power of two, walked until it is back among the numbers (J. Black & P. Rogaway, Ciphers with arbitrary finite
+/// domains, 2002).
 fn permuted(number: u64, count: u64, key: u64) -> u64 {
     let half = (u64::BITS - count.saturating_sub(1).leading_zeros()).div_ceil(2).max(1);
     let mask = (1 << half) - 1;

@@ -1,4 +1,4 @@
-//! How far a bound may be from the truth: the surrogate's error, and the time steps'.
+//! Errors of a bound: the surrogate's error, and the time steps'.
 //!
 //! *Surrogate.* At validation samples the surrogate is compared with the simulation itself; its error is the largest
 //! difference. A scan's error is estimated from its own points.
@@ -76,9 +76,9 @@ pub fn time_error_certified(range: Range, halved: Range) -> f64 {
 }
 
 impl BandError {
-    /// From the errors of every row, and the rows' ranges. `tolerance` is that of the error relative to `span`, the
-    /// output's whole range, zero if it is at rest; a larger error is unresolved. Without one, a band is lost from
-    /// where its surrogate no longer follows the response.
+    /// Band error from the errors of every row, and the rows' ranges. `tolerance` is that of the error relative to
+    /// `span`, the output's whole range, zero if it is at rest; a larger error is unresolved. Without one, a band is
+    /// lost from where its surrogate no longer follows the response.
     pub fn new(ranges: &[Range], surrogate: &[f64], time: &[f64], span: f64, tolerance: Option<f64>) -> Self {
         let surrogate = held_up(surrogate, SAFETY_OF_SURROGATE, TUNING.of_largest);
         Self::of(surrogate, ranges, time, span, tolerance, tolerance.is_none())

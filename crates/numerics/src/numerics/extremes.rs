@@ -168,7 +168,8 @@ fn climb(ends: &mut [&mut End], evaluate: &impl Fn(&[Vec<f64>]) -> Vec<f64>) {
 }
 
 impl Search {
-    /// From the values of function number `output`, for which differences of `least` do not matter, on a lattice.
+    /// Search from the values of function number `output`, for which differences of `least` do not matter, on a
+    /// lattice.
     fn new(output: usize, least: f64, lattice: &Lattice, values: &[f64]) -> Self {
         let range = Range::of(values);
         let settled = (TUNING.settled_end * range.width()).max(TUNING.settled_of_least * least);
@@ -220,7 +221,7 @@ impl Search {
         more
     }
 
-    /// From the best of all ends, over `dimension` parameters.
+    /// The extent from the best of all ends, over `dimension` parameters.
     fn extent(&self, dimension: usize) -> Extent {
         let best = |(sign, omitted): (f64, &Vec<(usize, f64)>)| {
             let omitted = omitted.last().map_or(f64::NEG_INFINITY, |&(_, height)| height);
@@ -298,7 +299,7 @@ impl End {
         (self.output, self.sign > 0.0)
     }
 
-    /// How high it is.
+    /// Its height.
     fn height(&self) -> f64 {
         self.sign * self.best
     }
@@ -316,7 +317,7 @@ impl End {
         }
     }
 
-    /// Where the function is needed for the next step: around the peak, and on it.
+    /// Points at which the function is needed for the next step: around the peak, and on it.
     fn points(&self) -> impl Iterator<Item = Vec<f64>> {
         self.around.neighbours().chain([self.xi.clone()])
     }

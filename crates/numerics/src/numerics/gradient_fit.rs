@@ -89,7 +89,7 @@ pub struct GradientFit {
 }
 
 impl GradientFit {
-    /// Through samples at these ξ, for functions with these derivatives there. `None` where samples are too few for
+    /// Fit through samples at these ξ, for functions with these derivatives there. `None` if samples are too few for
     /// terms of first and second degree.
     pub fn new(points: Vec<Vec<f64>>, functions: &[Derivatives<'_>]) -> Option<Self> {
         let k = points.first()?.len();

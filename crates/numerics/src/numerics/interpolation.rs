@@ -7,12 +7,13 @@ use super::tuning::TUNING;
 pub struct Interpolation {
     /// Rows with their weights.
     pub fine: Vec<(usize, f64)>,
-    /// The same by fewer rows; the difference estimates the error. Empty where the time is that of a row.
+    /// The same by fewer rows; the difference estimates the error. Empty if the time is that of a row.
     pub coarse: Vec<(usize, f64)>,
 }
 
 impl Interpolation {
-    /// At a time among those of rows, which ascend; `None` where there are no rows, or it lies after the last.
+    /// Interpolation at a time among those of rows, which ascend; `None` if there are no rows, or if the time is after
+    /// the last.
     pub fn new(times: &[f64], time: f64) -> Option<Self> {
         let next = times.partition_point(|own| *own < time);
         let is_near = |row: usize| {

@@ -101,7 +101,7 @@ impl Lattice {
     }
 }
 
-/// How far the middle one of five values is from the cubic through the others.
+/// Distance of the middle one of five values from the cubic through the others.
 fn residual([a, b, c, d, e]: [f64; 5]) -> f64 {
     (a - 4.0 * b + 6.0 * c - 4.0 * d + e).abs() / 6.0
 }

@@ -36,7 +36,7 @@ impl Ledger {
         ends.get_mut(row * self.outputs + output).into_iter().for_each(|end| widen(end, (range.lower, range.upper)));
     }
 
-    /// From the least to the largest value of an output in a row; empty if it has no value.
+    /// Range of an output's values in a row; empty if it has no value.
     pub fn range(&self, row: usize, output: usize) -> Range {
         let ends = self.ends.lock().unwrap_or_else(PoisonError::into_inner);
         ends.get(row * self.outputs + output).copied().unwrap_or(EMPTY)

@@ -47,7 +47,7 @@ pub(super) struct Level {
 }
 
 impl Level {
-    /// That of a level from 1 on, computed once.
+    /// The level `level`, from 1 on, computed once.
     pub fn of(level: u8) -> &'static Self {
         static LEVELS: [OnceLock<Level>; TUNING.max_level as usize + 1] =
             [const { OnceLock::new() }; TUNING.max_level as usize + 1];

@@ -54,7 +54,7 @@ impl InBox {
         Self { corner, slopes: own.slopes.iter().zip(widths).map(|(slope, width)| slope * width).collect() }
     }
 
-    /// How much it changes over the box at most; 1 where it does not.
+    /// Its change over the box, at most; 1 if it does not change.
     fn change(&self) -> f64 {
         let change: f64 = self.slopes.iter().map(|slope| slope.abs()).sum();
         if change > f64::MIN_POSITIVE { change } else { 1.0 }

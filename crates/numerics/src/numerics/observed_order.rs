@@ -36,7 +36,7 @@ pub struct Correction {
 }
 
 impl Correction {
-    /// None.
+    /// No correction.
     pub const NONE: Self = Self { factor: 1.0, least: 0.0 };
 
     /// The corrected error.

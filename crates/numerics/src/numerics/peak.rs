@@ -73,7 +73,7 @@ impl Peak {
         xi.map(|((center, spacing), step)| (center + step * spacing).clamp(-1.0, 1.0)).collect()
     }
 
-    /// Where, no further away than the neighbours, the quadratic through the values at its
+    /// ξ, no further away than the neighbours, at which the quadratic through the values at its
     /// [neighbours](Self::neighbours) is best. `sign` is 1 for a largest value, −1 for a least.
     pub fn vertex(&self, values: &[f64], sign: f64) -> Vec<f64> {
         let k = self.center.len();
@@ -92,7 +92,7 @@ impl Peak {
     }
 }
 
-/// Where sᵀd − ½ dᵀBd is largest for |dᵢ| ≤ 1.
+/// The step at which sᵀd − ½ dᵀBd is largest for |dᵢ| ≤ 1.
 fn best_step(slope: &DVector<f64>, bend: &DMatrix<f64>) -> Vec<f64> {
     if slope.len() <= TUNING.most_faces { best_of_faces(slope, bend) } else { along_faces(slope, bend) }
 }

@@ -26,7 +26,7 @@ use super::range::{Enclosed, Range};
 use super::tensor::{Matrix, Separable, Work, cos_pi};
 use super::tuning::TUNING;
 
-/// How the range of a polynomial is found.
+/// Method for the range of a polynomial.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RangeKind {
     /// Interval evaluation term by term (the paper's).
@@ -62,7 +62,7 @@ enum Enclosure {
 }
 
 impl PolynomialRange {
-    /// For polynomials of degree `orders[i]` in parameter i.
+    /// Range of polynomials of degree `orders[i]` in parameter i.
     pub fn new(orders: &[usize], kind: RangeKind) -> Self {
         let enclosure = match intervals(orders) {
             Some(intervals) => Enclosure::Grid(Box::new(ExtremaGrid::new(orders, &intervals))),
@@ -122,7 +122,7 @@ struct ExtremaGrid {
 }
 
 impl ExtremaGrid {
-    /// With `intervals[i]` intervals in parameter i, none where its degree is zero.
+    /// Grid with `intervals[i]` intervals in parameter i, none if its degree is zero.
     fn new(orders: &[usize], intervals: &[usize]) -> Self {
         let spacing = |count: usize| FRAC_PI_2 / count.max(1) as f64;
         let axis = |(&n, &count): (&usize, &usize)| Matrix::new(count + 1, n + 1, |l, j| cos_pi(j * l, count.max(1)));

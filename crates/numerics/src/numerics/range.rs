@@ -27,7 +27,7 @@ impl Range {
         self.upper - self.lower
     }
 
-    /// How far `value` lies outside; NaN of the unknown.
+    /// Distance of `value` outside; NaN for an unknown range.
     pub fn distance(self, value: f64) -> f64 {
         if self.contains(value) { 0.0 } else { (self.lower - value).max(value - self.upper) }
     }
@@ -41,8 +41,8 @@ impl Range {
         Self { lower: least(self.lower, others.lower), upper: most(self.upper, others.upper) }
     }
 
-    /// How far values from the least to the largest of others lie outside; zero where there are none, NaN of the
-    /// unknown.
+    /// Largest distance outside of values from the least to the largest of others; zero if there are none, NaN for an
+    /// unknown range.
     pub fn misses(self, others: Self) -> f64 {
         if others == EMPTY { 0.0 } else { self.distance(others.lower).max(self.distance(others.upper)) }
     }
@@ -56,9 +56,9 @@ impl Range {
 /// Known parts of a range: it lies within `outer`, and holds `attained`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Enclosed {
-    /// Holds the range.
+    /// Contains the range.
     pub outer: Range,
-    /// Within the range.
+    /// Part of the range that is attained.
     pub attained: Range,
 }
 
@@ -109,8 +109,8 @@ pub fn union((a, of_a): (Range, f64), (b, of_b): (Range, f64)) -> (Range, f64) {
     (range, above.max(below))
 }
 
-/// How far the larger of two values may lie from the larger of the true ones, given the errors of both; NaN where one
-/// is not known.
+/// Largest distance of the larger of two values from the larger of the true ones, given the errors of both; NaN if one
+/// is unknown.
 pub fn error_of_larger([a, b]: [f64; 2], [of_a, of_b]: [f64; 2]) -> f64 {
     let [above, below] = [1.0, -1.0].map(|sign| (a + sign * of_a).max(b + sign * of_b) - a.max(b));
     // `max` passes over NaN.

@@ -13,7 +13,7 @@ pub struct TensorGrid {
 }
 
 impl TensorGrid {
-    /// From each axis' coordinates.
+    /// Grid from each axis' coordinates.
     pub fn new(axes: Vec<Vec<f64>>) -> Self {
         Self { axes }
     }

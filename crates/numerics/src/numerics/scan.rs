@@ -26,7 +26,7 @@ pub struct ScanBounds {
     outputs: usize,
     /// Points along each axis, the last fastest.
     points: Vec<usize>,
-    /// By time, then by output: least and largest. Empty while least > largest.
+    /// Least and largest, by time, then by output. Empty while least > largest.
     extremes: Vec<[Extreme; 2]>,
     /// Whether a sample was NaN.
     gaps: Vec<bool>,
@@ -51,7 +51,7 @@ fn include([least, largest]: &mut [Extreme; 2], [low, high]: [Extreme; 2]) {
 }
 
 impl ScanBounds {
-    /// Before the first sample of a grid with `points[i]` points along axis i.
+    /// Bounds before the first sample of a grid with `points[i]` points along axis i.
     pub fn new(times: usize, outputs: usize, points: &[usize]) -> Self {
         Self {
             outputs,
@@ -170,7 +170,7 @@ impl Reach {
         }
     }
 
-    /// At a sample; rounding of the sums apart.
+    /// Reach at a sample; rounding of the sums aside.
     fn at(&self, index: usize, axes: usize) -> f64 {
         1.001 * (self.sum[index] + axes as f64 * self.largest[index])
     }

@@ -19,7 +19,7 @@ impl ScanGrid {
     /// Fewest samples of a shard, but for the last.
     pub const LEAST_SHARD: usize = TUNING.least_shard;
 
-    /// With `points[i]` points along axis i, both ends included.
+    /// Grid with `points[i]` points along axis i, both ends included.
     pub fn new(points: &[usize]) -> Self {
         let grid = TensorGrid::full_factorial(points);
         // Slabs of the first axis stay together, so that neighbours do.

@@ -31,7 +31,7 @@ pub struct BoundaryMargins {
     pub met: Vec<usize>,
     /// Indices of those that do not.
     pub missed: Vec<usize>,
-    /// By sample: positive without the event; NaN of samples of other words.
+    /// Margin of each sample: positive without the event; NaN for samples of other words.
     pub values: Vec<f64>,
 }
 
@@ -54,7 +54,7 @@ pub struct SegmentMotions {
 pub struct BranchMotion {
     /// Positions and velocities, line by line, sample by sample.
     pub values: Vec<f64>,
-    /// How far each line is off at most, where samples are beyond the segment.
+    /// Largest error of each line, if samples are beyond the segment.
     pub doubts: Vec<f64>,
 }
 
@@ -122,7 +122,7 @@ impl SegmentMotions {
         scales
     }
 
-    /// With other times, and other values at nodes.
+    /// The motions with other times, and other values at nodes.
     #[must_use]
     pub fn mapped(&self, values: impl Fn(&Vec<f64>) -> Vec<f64>) -> Self {
         Self {

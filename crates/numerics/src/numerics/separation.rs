@@ -12,7 +12,7 @@ use super::tuning::TUNING;
 pub struct Separated {
     /// Numbers of the parameters of each group, ascending; those that change nothing are in none.
     pub groups: Vec<Vec<usize>>,
-    /// How far the sum is from the function.
+    /// Distance of the sum from the function.
     pub defect: f64,
 }
 
@@ -20,7 +20,7 @@ pub struct Separated {
 #[derive(Clone, Debug)]
 pub struct Separation {
     dimension: usize,
-    /// Where parameters are that are not of a group.
+    /// Point with the parameters that are not of a group.
     anchor: Vec<f64>,
     /// The anchor; with one parameter elsewhere, twice; with two, twice; the points to be tried.
     points: Vec<Vec<f64>>,
@@ -28,7 +28,7 @@ pub struct Separation {
 }
 
 impl Separation {
-    /// For k parameters.
+    /// Separation for k parameters.
     pub fn new(dimension: usize) -> Self {
         let mut scattered = spread(dimension, 3 + TUNING.tried_points);
         let tried = scattered.split_off(3);
@@ -47,7 +47,7 @@ impl Separation {
         Self { dimension, anchor, points, tried }
     }
 
-    /// Where functions have to be known.
+    /// Points at which functions have to be known.
     pub fn points(&self) -> &[Vec<f64>] {
         &self.points
     }
@@ -95,7 +95,7 @@ impl Separation {
         if defect <= none * groups.len().max(1) as f64 { Separated { groups, defect } } else { together }
     }
 
-    /// How far the sum over groups is from the function at the tried points.
+    /// Distance of the sum over groups from the function at the tried points.
     fn defect(&self, groups: &[Vec<usize>], values: &[f64], evaluate: impl Fn(&[Vec<f64>]) -> Vec<f64>) -> f64 {
         let parts = self.tried.iter().flat_map(|xi| {
             groups.iter().map(move |group| {

@@ -1,4 +1,4 @@
-//! Which parameter matters: shares in the variance of a polynomial, every parameter spread evenly over its interval.
+//! Shares of the parameters in the variance of a polynomial, every parameter spread evenly over its interval.
 //!
 //! In products of orthonormal Legendre polynomials the variance is the sum of the squares of all coefficients but the
 //! constant's, and the terms in which a parameter occurs, alone or with others, are its part (Sobol 1993; Sudret 2008).

@@ -91,7 +91,7 @@ impl SparseBasis {
         Self::closed(orders.len(), count, degrees)
     }
 
-    /// With downward-closed degrees, each term after those that it has as factors.
+    /// The basis of downward-closed degrees, each term after those that it has as factors.
     fn closed(dimension: usize, count: usize, degrees: Vec<u8>) -> Self {
         let term = |t: usize| &degrees[t * dimension..][..dimension];
         let places: FxHashMap<&[u8], u32> = (0..count).map(|t| (term(t), t as u32)).collect();

@@ -27,7 +27,7 @@ pub struct TransformWork {
 }
 
 impl SparseTransform {
-    /// For values at all nodes of a grid.
+    /// Transform of values at all nodes of a grid.
     pub fn new(grid: &SparseGrid) -> Self {
         let basis = SparseBasis::new(grid);
         let highest = basis.orders().iter().copied().max().unwrap_or(0);

@@ -44,7 +44,7 @@ impl Surrogate {
         }
     }
 
-    /// Through the values at a grid's nodes.
+    /// Surrogate through the values at a grid's nodes.
     pub fn sparse(grid: &SparseGrid) -> Self {
         let transform = SparseTransform::new(grid);
         Self {

@@ -21,7 +21,7 @@ pub struct TaylorRange {
 /// The same polynomial as a tensor of Chebyshev polynomials of degree N in each variable.
 #[derive(Clone, Debug)]
 struct Tensor {
-    /// Where each monomial stands in the tensor of powers.
+    /// Index of each monomial in the tensor of powers.
     indices: Vec<usize>,
     powers: Vec<f64>,
     conversion: Separable,
@@ -30,7 +30,7 @@ struct Tensor {
 }
 
 impl TaylorRange {
-    /// For polynomials in `variables` variables of total degree `order`.
+    /// Range of polynomials in `variables` variables of total degree `order`.
     pub fn new(variables: usize, order: usize, kind: RangeKind) -> Self {
         let monomials = Monomials::new(variables, order);
         let even = (0..monomials.len()).map(|r| monomials.exponents(r).iter().all(|e| e % 2 == 0)).collect();
@@ -59,7 +59,7 @@ impl TaylorRange {
         self.enclose(coefficients).0
     }
 
-    /// The same, with how much too wide it may be: NaN where the polynomial is too large to know.
+    /// The same, with how much too wide it may be: NaN if the polynomial is too large to know.
     pub fn enclose(&mut self, coefficients: &[f64]) -> (Range, f64) {
         let terms = self.term_by_term(coefficients);
         let Some(tensor) = &mut self.tensor else { return (terms, f64::NAN) };

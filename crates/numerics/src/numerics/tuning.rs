@@ -14,7 +14,7 @@ tuning! {
         unsure: f64 = 0.25, moves "scanned bounds";
         /// A bound is good when it is this close to an attained value, relative to the width of the attained range.
         bernstein_tolerance: f64 = 1e-3, moves "interval ranges of polynomials";
-        /// About how many numbers are averaged before the bound is taken as it stands.
+        /// Approximate number of averages after which the bound is taken as it stands.
         bernstein_work: usize = 1 << 22, moves "interval ranges of polynomials";
         /// Fewest times that a box may be split, however many numbers are averaged.
         bernstein_splits: usize = 64, moves "interval ranges of polynomials";
@@ -30,7 +30,7 @@ tuning! {
         settled_multipliers: f64 = 1e-10, moves "tolerances that are found";
         /// Halvings of the logarithm of a multiplier.
         halvings_of_multiplier: usize = 80, moves "tolerances that are found";
-        /// How far below the first guess a multiplier is searched for, as a share of it.
+        /// Least multiplier that is searched for, as a share of the first guess.
         smallest_multiplier: f64 = 1e-12, moves "tolerances that are found";
         /// Multiple of the multiplier at which the constraint alone makes all sizes as small as they may be, up to
         /// which the search goes.

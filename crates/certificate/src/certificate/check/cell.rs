@@ -136,7 +136,7 @@ impl Passed {
         let n = motion.equations.coordinates;
         let cell = Cell { middle: proven.middle, half: proven.half };
         let state = integrated(fine, cell, q, v, proven);
-        // How far ŷ(−1) is from the polynomials that it begins with.
+        // Distance of ŷ(−1) from the polynomials that it begins with.
         let begun = [matrix_at(fine, &state.q, -1.0), matrix_at(fine, &state.v, -1.0)];
         let jump: Vec<f64> = begun.iter().zip([q, v]).flat_map(|(at, start)| distances(fine, at, start)).collect();
         let entry: Vec<f64> = frame.error(&coarse.box_of).iter().zip(&jump).map(|(a, b)| up(a + b)).collect();

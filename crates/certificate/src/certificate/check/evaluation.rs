@@ -12,7 +12,7 @@ use super::super::{Equations, Node};
 #[derive(Clone, Debug)]
 pub(super) struct Dual {
     pub value: Vec<f64>,
-    /// By position i at i, velocity i at n + i, acceleration i at 2n + i, multiplier i at 3n + i.
+    /// Derivatives: by position i at i, velocity i at n + i, acceleration i at 2n + i, multiplier i at 3n + i.
     pub by: BTreeMap<usize, Vec<f64>>,
 }
 
@@ -26,12 +26,12 @@ pub(super) struct State {
 }
 
 impl State {
-    /// The same of each column.
+    /// The state with a function applied to each column.
     pub fn map(&self, of: impl Fn(&Models) -> Models) -> Self {
         Self { q: of(&self.q), v: of(&self.v), w: of(&self.w), lambda: of(&self.lambda) }
     }
 
-    /// Without radii.
+    /// The state without radii.
     pub fn bare(&self) -> Self {
         self.map(|models| models.clone().without_radii())
     }

@@ -22,7 +22,7 @@ use cell::{Open, Passed, Shapes, Unknowns};
 use evaluation::{Given, State, evaluate};
 use range::Ranges;
 
-/// How much was checked.
+/// Numbers of checked pieces, cells and bounds.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Checked {
     /// Pieces of boxes.
@@ -41,7 +41,7 @@ pub enum Refusal {
     Malformed {
         /// From 1.
         system: usize,
-        /// Which.
+        /// The fault.
         what: String,
     },
     /// Some parameters are in no piece.
@@ -57,7 +57,7 @@ pub enum Refusal {
         system: usize,
         /// From 1.
         piece: usize,
-        /// Which statement, and why it does not follow.
+        /// The statement, and why it does not follow.
         why: String,
     },
 }
@@ -238,7 +238,7 @@ fn shaped(proven: &ProvenCell, time: f64, shapes: &Shapes, motion: &Unknowns) ->
     let (n, m) = (motion.equations.coordinates, motion.equations.multipliers);
     let ProvenCell { middle, half, w, lambda, tube } = proven;
     let is_power_of_two = *half > 0.0 && half.is_normal() && half.to_bits().trailing_zeros() >= 52;
-    // Then ends are exact.
+    // The ends are then exact.
     let place = middle / half;
     if !is_power_of_two || place.fract() != 0.0 || place.abs() > 1e15 {
         return Err("half its length is no power of two, or its middle no multiple of that".to_owned());

@@ -9,7 +9,7 @@ use symdiff::taylor_model::{ModelSpace, up};
 /// Splits boxes until all are decided.
 pub(super) struct Ranges<'r> {
     monomials: &'r Monomials,
-    /// For each axis and monomial the one with one power less of that axis.
+    /// For each axis and monomial, the monomial with one power less of that axis.
     lowered: Vec<Vec<Option<usize>>>,
 }
 

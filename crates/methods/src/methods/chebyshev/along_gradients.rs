@@ -17,7 +17,7 @@ pub(super) struct FollowedWithin<'f> {
     followed: &'f FollowedEnds,
     parameters: usize,
     outputs: usize,
-    /// By row and output: whether they meet it, in rows that count.
+    /// Whether each end meets it, in rows that count, by row and output.
     is_within: Vec<bool>,
     /// Whether all of them do.
     all: bool,

@@ -54,7 +54,7 @@ impl<'e> Combined<'e> {
         Some(Self { ensemble, lines, domain })
     }
 
-    /// The same validation samples where the lines have their combinations' values.
+    /// The same validation samples, at the points of the lines at which combinations have their values.
     pub fn validation(&self, validation: &Validation) -> Validation {
         validation.at(validation.points.iter().map(|xi| self.project(xi)).collect())
     }
@@ -70,7 +70,7 @@ impl<'e> Combined<'e> {
         [-1.0, 1.0].map(ends).into()
     }
 
-    /// Where on the lines the combinations are as at ξ of the box.
+    /// Points of the lines at which the combinations have their values at ξ of the box.
     pub fn project(&self, xi: &[f64]) -> Vec<f64> {
         let sample = self.of_box().sample(xi);
         self.lines.iter().map(|line| line.project(&sample)).collect()
@@ -145,7 +145,7 @@ impl<'e> Line<'e> {
         from.iter().zip(to).map(between).collect()
     }
 
-    /// Where on the line a sample's combination has the same value; the nearest end where it lies beyond.
+    /// Point of the line at which the combination has its value of a sample; the nearest end if the value lies beyond.
     fn project(&self, sample: &Sample) -> f64 {
         let own: Vec<f64> = self.parameters.iter().map(|&parameter| sample[parameter]).collect();
         let wanted = self.value(&own);

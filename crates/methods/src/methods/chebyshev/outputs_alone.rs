@@ -89,7 +89,7 @@ impl Ensemble for OutputsAlone<'_> {
     }
 }
 
-/// From no coordinates no output follows.
+/// A closure without coordinates, from which no output follows.
 struct Nothing {
     outputs: usize,
 }

@@ -16,14 +16,14 @@ use crate::numerics::{
 
 /// Polynomials through the outputs' own samples.
 pub(super) struct Polynomials<'a> {
-    /// Through whose samples they go.
+    /// The surrogate through whose samples the polynomials go.
     pub surrogate: &'a Surrogate,
     /// Output by output.
     pub coefficients: &'a [f64],
 }
 
 impl Polynomials<'_> {
-    /// How many there are.
+    /// Number of outputs.
     pub fn outputs(&self) -> usize {
         self.coefficients.len() / self.surrogate.basis().len()
     }
@@ -38,7 +38,7 @@ impl Polynomials<'_> {
         values
     }
 
-    /// Which parameters matter for more than rounding, where all values are known.
+    /// Sensitivities, if all values are known; zero for outputs whose range is rounding.
     pub fn sensitivities(&self, analysis: &SensitivityAnalysis, rounding: f64) -> Option<Vec<Sensitivity>> {
         self.coefficients.iter().all(|value| value.is_finite()).then_some(())?;
         let extents = self.extents();
@@ -52,7 +52,7 @@ impl Polynomials<'_> {
         Some(found)
     }
 
-    /// Where each is least and greatest, among the samples and the corners of the box.
+    /// Extents of the outputs, among the samples and the corners of the box.
     fn extents(&self) -> Vec<Extent> {
         let mut points = self.surrogate.samples().to_vec();
         let k = points.first().map_or(0, Vec::len);

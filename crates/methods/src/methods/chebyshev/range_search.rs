@@ -24,7 +24,7 @@ pub(super) struct Functions<'f> {
     pub are_polynomials: bool,
     /// Rounding of each output, below which no difference is searched for, by number of the output.
     pub rounding: &'f [f64],
-    /// Where some of them are known to be large or small, by [`block`].
+    /// Points at which some of them are known to be large or small, by [`block`].
     pub places: &'f [Vec<Vec<f64>>],
     /// Their values.
     pub evaluate: &'f Evaluate<'f>,
@@ -35,7 +35,7 @@ pub(super) const fn block(output: usize) -> usize {
     output / TUNING.outputs_together
 }
 
-/// How ranges over a box are found.
+/// Search for ranges over a box.
 pub(super) struct RangeSearch {
     separation: Separation,
     lattices: Lattices,
@@ -45,7 +45,7 @@ pub(super) struct RangeSearch {
 }
 
 impl RangeSearch {
-    /// For k parameters.
+    /// Search for k parameters.
     pub fn new(k: usize) -> Self {
         // Mirrored, they are apart from the search's own.
         let checks = spread(k, TUNING.checks_of_climbs * k)
@@ -61,7 +61,7 @@ impl RangeSearch {
         self.climbs.as_ref()
     }
 
-    /// Where functions have to be known before their ranges are sought.
+    /// Points at which functions have to be known before their ranges are sought.
     pub fn points(&self) -> &[Vec<f64>] {
         self.separation.points()
     }

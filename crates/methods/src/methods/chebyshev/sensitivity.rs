@@ -1,4 +1,4 @@
-//! Which tolerance matters: Sobol indices of every parameter for every output, row by row.
+//! Sobol indices of every parameter for every output, row by row: they show which tolerance matters.
 
 use std::f64::consts::PI;
 
@@ -28,9 +28,9 @@ struct Fine {
 
 /// Outputs as functions of the parameters.
 pub(super) trait Predicted {
-    /// How many they are.
+    /// Number of outputs.
     fn outputs(&self) -> usize;
-    /// Through whose samples they go.
+    /// The surrogate through whose samples they go.
     fn surrogate(&self) -> &Surrogate;
     /// Values of some of them, output by output, point by point.
     fn predict_some(&self, outputs: &[usize], points: &[Vec<f64>]) -> Vec<f64>;
@@ -55,7 +55,7 @@ struct OverLines<'a> {
     combined: &'a Combined<'a>,
     /// Polynomials over the box, of more parameters than fine ones are made of.
     surrogate: Surrogate,
-    /// Where on the lines the samples are of these, or of the fine polynomials.
+    /// Points on the lines of the samples of these, or of the fine polynomials.
     along: Vec<Vec<f64>>,
 }
 
@@ -73,7 +73,7 @@ pub(super) struct SensitivityAnalysis<'a> {
 }
 
 impl<'a> SensitivityAnalysis<'a> {
-    /// For outputs that follow from a surrogate over a box.
+    /// Analysis of outputs that follow from a surrogate over a box.
     pub fn new(domain: &ParameterBox, surrogate: &Surrogate) -> Self {
         let k = domain.dimension();
         let nominal: Vec<f64> = domain.xi(&domain.nominal).into_iter().map(|xi| xi.clamp(-1.0, 1.0)).collect();
@@ -89,7 +89,7 @@ impl<'a> SensitivityAnalysis<'a> {
         Self { nominal, causes, fine, lines: None, own, varies }
     }
 
-    /// For outputs that follow from surrogates over lines through a box: of the parameters of the box.
+    /// Analysis of outputs that follow from surrogates over lines through a box: of the parameters of the box.
     pub fn over(combined: &'a Combined<'a>) -> Self {
         let domain = combined.of_box();
         let surrogate = Surrogate::sparse(&of_total_degree(domain.dimension()));

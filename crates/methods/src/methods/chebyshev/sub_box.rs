@@ -38,7 +38,7 @@ pub(super) struct SubBox<'r> {
     pub points: Cow<'r, [Vec<f64>]>,
     /// and their values.
     pub direct: Cow<'r, ValidationTable>,
-    /// How many of the points spread over a box are among them.
+    /// Number of points among them that are spread over a box.
     pub spread: usize,
     /// Whether some of them were chosen for the surrogate as it is.
     pub challenged: bool,

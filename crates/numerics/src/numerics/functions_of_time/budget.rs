@@ -77,7 +77,7 @@ pub fn with_energy(energy: f64, bounded: bool, ends: &[f64], functional: &[Cell]
 pub fn loss_by_energy(factor: f64, ends: &[f64], functional: &[Cell], function: &[Cell]) -> f64 {
     let lengths = lengths(ends);
     let density = |cell: usize| (functional[cell][0] / lengths[cell]).abs();
-    // Where the kernel ends with the cells before one.
+    // Cost of an end of the kernel with the cells before `end`.
     let of_end = |end: usize| {
         let before = end.saturating_sub(2)..end;
         let whole = before.clone().map(density).fold(0.0, f64::max);

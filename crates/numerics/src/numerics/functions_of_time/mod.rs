@@ -166,7 +166,7 @@ fn loss_by_mean(multiplier: f64, ends: &[f64], functional: &[Cell]) -> f64 {
 
 /// The best function between limits with a limited rate, and the cost of joining cells in pairs.
 fn between(rate: f64, limits: &impl Limits, ends: &[f64], functional: &[Cell]) -> (Vec<Cell>, f64) {
-    // From the end, where the kernel is largest as a rule.
+    // Pairs from the end, where the kernel is largest as a rule.
     let joined = |pair: &[Cell]| pair.iter().fold([0.0; 2], |sum, own| [sum[0] + own[0], sum[1] + own[1]]);
     let mut pairs: Vec<Cell> = functional.rchunks(2).map(joined).collect();
     let mut of_pairs: Vec<f64> = ends.rchunks(2).map(|pair| pair[pair.len() - 1]).collect();
@@ -221,7 +221,7 @@ fn sign(value: f64) -> f64 {
     if value == 0.0 { 0.0 } else { value.signum() }
 }
 
-/// When a cell begins, s.
+/// Beginning of a cell, s.
 fn begin(ends: &[f64], cell: usize) -> f64 {
     cell.checked_sub(1).map_or(0.0, |before| ends[before])
 }

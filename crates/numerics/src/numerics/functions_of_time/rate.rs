@@ -52,7 +52,7 @@ pub fn from_zero(ends: &[f64], slopes: &[f64]) -> Vec<Cell> {
 struct Side {
     points: VecDeque<(f64, f64)>,
     shift: f64,
-    /// How far out the limit is.
+    /// Distance of the limit.
     limit: f64,
 }
 
@@ -103,11 +103,11 @@ impl Side {
 /// Limits at the ends of cells, at 0 those of the beginning: their middle and half of their distance. A function u
 /// between −1 and 1 is x = middle + reach · u between them.
 pub trait Limits {
-    /// Those at the end of the cell before this number.
+    /// Limits at the end of the cell before this number.
     fn at(&self, number: usize) -> [f64; 2];
 }
 
-/// Those of u itself.
+/// Limits of u itself.
 pub struct Still;
 
 impl Limits for Still {
@@ -122,7 +122,7 @@ impl Limits for Arc<[[f64; 2]]> {
     }
 }
 
-/// Those of cells in pairs from the end.
+/// Limits of cells in pairs from the end.
 pub struct EveryOther<'l, L> {
     /// Limits of all cells.
     pub limits: &'l L,
@@ -145,7 +145,7 @@ pub fn between(rate: f64, limits: &impl Limits, ends: &[f64], functional: &[Cell
     };
     let [lower, upper] = of_limits(0);
     let (mut above, mut below) = (Side::new(upper), Side::new(-lower));
-    // Where the value of the cells so far is largest.
+    // Values of x at which the value of the cells so far is largest.
     let mut largest = Vec::with_capacity(by_values.len());
     for (number, &by_value) in by_values.iter().enumerate() {
         if let Some(cell) = number.checked_sub(1) {

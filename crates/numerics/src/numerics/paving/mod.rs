@@ -30,7 +30,7 @@ pub struct Tubes {
     pub scales: Vec<f64>,
 }
 
-/// When a paving ends.
+/// Limits at which a paving ends.
 #[derive(Clone, Copy, Debug)]
 pub struct PavingLimits {
     /// Volume of the boxes that are not decided, as a share of the outer volume.
@@ -55,12 +55,12 @@ pub struct Paving {
     pub inside: Boxes,
     /// Boxes that are not decided: with those within it they cover the set.
     pub undecided: Boxes,
-    /// For each of these the planes that cut it.
+    /// Planes that cut each of these.
     cuts: Vec<Cut>,
 }
 
 impl Boxes {
-    /// None yet, of k axes.
+    /// No boxes yet, of k axes.
     pub fn new(dimension: usize) -> Self {
         Self { dimension, ends: Vec::new() }
     }
@@ -95,7 +95,7 @@ impl Boxes {
     }
 }
 
-/// As a share of that of [−1, 1]^k.
+/// Volume of a box as a share of that of [−1, 1]^k.
 fn volume(lower: &[f64], upper: &[f64]) -> f64 {
     lower.iter().zip(upper).map(|(lower, upper)| 0.5 * (upper - lower)).product()
 }

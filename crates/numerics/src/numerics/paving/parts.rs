@@ -63,7 +63,7 @@ impl PavingBox {
         self.coefficients.len()
     }
 
-    /// As a share of the whole box.
+    /// Volume as a share of the whole box.
     pub fn volume(&self) -> f64 {
         let (lower, upper) = self.ends.split_at(self.ends.len() / 2);
         volume(lower, upper)
@@ -112,7 +112,7 @@ impl PavingBox {
         (linear, error)
     }
 
-    /// Without the quantities that are decided; `None` where one is impossible.
+    /// Removes the quantities that are decided; `None` if one is impossible.
     pub fn classified(self, shape: &Shape, tubes: &Tubes) -> Option<Self> {
         let is_beyond = |row: usize, range: Range| {
             let [lower, upper] = tubes.outer[row];
@@ -128,7 +128,7 @@ impl PavingBox {
         Some(self.only(shape, is_open))
     }
 
-    /// With some of its quantities.
+    /// Keeps some of its quantities.
     pub fn only(mut self, shape: &Shape, is_kept: impl Fn(usize, Range) -> bool) -> Self {
         let mut kept = 0;
         for index in 0..self.rows.len() {

@@ -47,7 +47,7 @@ impl Climb {
         self.promised = 0.0;
         let mut probes = self.last.iter().map(|&place| seen.value(self.goal, place));
         for (xi, reach) in self.targets.iter_mut().zip(&mut self.reach) {
-            // As many probes as sides were asked for.
+            // One value for each side that was probed.
             let mut value = || probes.next().unwrap_or(here);
             let (to, gain) = match sides(*xi, *reach) {
                 [Some(a), Some(b)] => {
@@ -112,7 +112,7 @@ impl Climb {
     }
 }
 
-/// Where along an axis to probe.
+/// Points to probe along an axis.
 fn sides(xi: f64, reach: f64) -> [Option<f64>; 2] {
     if xi >= 1.0 {
         [Some(1.0 - TUNING.on_face), None]
@@ -123,8 +123,8 @@ fn sides(xi: f64, reach: f64) -> [Option<f64>; 2] {
     }
 }
 
-/// Where in [−1, 1] the parabola through three values is largest, and by how much it is larger there than at x.
-/// (Position and value below and above x.)
+/// The point in [−1, 1] at which the parabola through three values is largest, and by how much it is larger there than
+/// at x. (Position and value below and above x.)
 pub(super) fn target(x: f64, here: f64, below: (f64, f64), above: (f64, f64)) -> (f64, f64) {
     let (a, b) = (below.0 - x, above.0 - x);
     let (left, right) = ((below.1 - here) / a, (above.1 - here) / b);

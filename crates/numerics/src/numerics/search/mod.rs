@@ -123,7 +123,8 @@ impl ExtremeSearch {
         Ok((0..outputs).map(|output| seen.extremes(output, &ends)).collect())
     }
 
-    /// Where the function would be largest if it were a sum of parabolas through the middle and the faces' middles.
+    /// The point at which the function would be largest if it were a sum of parabolas through the middle and the faces'
+    /// middles.
     fn separable_maximum(&self, seen: &Evaluations, goal: Goal) -> Vec<f64> {
         let value = |place| seen.value(goal, place);
         (0..self.dimension)

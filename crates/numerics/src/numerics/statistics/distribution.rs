@@ -5,7 +5,7 @@ use symdiff::math;
 use super::beta::{beta_cdf, beta_quantile};
 use super::special::{normal_cdf, normal_quantile};
 
-/// How a parameter is distributed, in its unit.
+/// Law of a parameter, in its unit.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Distribution {
     /// Every value between the ends as likely as any other.
@@ -76,7 +76,7 @@ impl Distribution {
             Self::Normal { mean, sigma } => mean + sigma * normal_quantile(p),
             Self::TruncatedNormal { mean, sigma, lower, upper } => {
                 let [low, high] = [lower, upper].map(|end| (end - mean) / sigma);
-                // From the tail that is thinner, so that no digits are lost.
+                // Uses the thinner tail, so that no digits are lost.
                 let value = if low > 0.0 {
                     let (low, high) = (normal_cdf(-low), normal_cdf(-high));
                     -normal_quantile(low + p * (high - low))
@@ -193,7 +193,7 @@ impl Distribution {
         math::pow(*median, power) * math::exp(0.5 * spread * spread) * between(spread) / between(0.0)
     }
 
-    /// How much of the law lies outside of an interval.
+    /// Share of the law outside of an interval.
     pub fn outside(&self, lower: f64, upper: f64) -> f64 {
         match self {
             Self::Normal { mean, sigma } => normal_cdf((lower - mean) / sigma) + normal_cdf((mean - upper) / sigma),
@@ -208,7 +208,7 @@ impl Distribution {
         }
     }
 
-    /// In files and tables.
+    /// Name in files and tables.
     pub fn name(&self) -> &'static str {
         match self {
             Self::Uniform { .. } => "uniform",

@@ -42,7 +42,7 @@ pub struct Replicates {
     means: Vec<f64>,
     /// Variances, each about its replicate's own mean.
     variances: Vec<f64>,
-    /// By quantile, replicate by replicate.
+    /// Quantiles, each replicate by replicate.
     quantiles: Vec<Vec<f64>>,
     /// The shares below them.
     shares: Vec<f64>,
@@ -51,7 +51,7 @@ pub struct Replicates {
 }
 
 impl Replicates {
-    /// Before the first, with the quantiles below which these shares lie.
+    /// No replicates yet, with the quantiles below which these shares lie.
     pub fn new(shares: &[f64]) -> Self {
         let quantiles = vec![Vec::with_capacity(REPLICATES); shares.len()];
         Self { quantiles, shares: shares.to_vec(), ..Self::default() }

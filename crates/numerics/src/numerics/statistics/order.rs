@@ -48,7 +48,7 @@ pub struct SampleQuantile {
 }
 
 impl SampleQuantile {
-    /// For a share, with an interval that leaves so much out.
+    /// The quantile of a share, with an interval that has the truth outside with the probability `outside`.
     pub fn new(share: f64, count: usize, outside: f64) -> Self {
         Self { share, ranks: ranks(share, count, outside) }
     }

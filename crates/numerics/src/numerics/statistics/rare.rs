@@ -22,7 +22,7 @@ pub enum RareMethod {
 }
 
 impl RareMethod {
-    /// As it is printed.
+    /// Printed name.
     pub fn name(self) -> &'static str {
         match self {
             Self::Importance => "importance sampling",
@@ -157,7 +157,7 @@ fn foreseen(found: Estimates, deviation: f64) -> Estimates {
     })
 }
 
-/// By rays from the middle.
+/// Estimates by rays from the middle.
 fn by_directions(k: usize, seen: &Subset, share: f64, slacks: &Slacks) -> Estimates {
     let of_replicate = |number: usize| {
         let numbers = replicate(number, k, TUNING.directions);

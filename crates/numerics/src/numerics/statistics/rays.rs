@@ -10,7 +10,7 @@ use crate::numerics::dot;
 /// Slacks that are the smaller the more of the errors is counted against them, point by point.
 pub type Slacks<'s> = dyn Fn(&[Vec<f64>]) -> Vec<[f64; 3]> + 's;
 
-/// Where a slack changes its sign: number of the direction, which slack, and both ends with their values.
+/// A change of a slack's sign: number of the direction, which slack, and both ends with their values.
 type Crossing = (usize, usize, [(f64, f64); 2]);
 
 /// A direction from numbers in (0, 1).

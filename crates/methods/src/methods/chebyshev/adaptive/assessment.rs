@@ -1,4 +1,4 @@
-//! How far off the surrogate of a sub-box is: at nodes that are new to it, and at validation samples.
+//! Error of the surrogate of a sub-box: at nodes that are new to it, and at validation samples.
 
 use super::Adaptation;
 use super::tuning::TUNING;

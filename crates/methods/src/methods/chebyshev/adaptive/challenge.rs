@@ -79,7 +79,7 @@ fn most_ends(sub_box: &SubBox) -> usize {
     TUNING.ends.max(TUNING.ends_a_parameter * sub_box.domain.dimension()).max(sub_box.grid.len() / TUNING.nodes_an_end)
 }
 
-/// How far apart points are for a sub-box's surrogate.
+/// Distances between points on the scale of a sub-box's surrogate.
 struct Scale {
     /// Weight of each axis.
     weights: Vec<f64>,

@@ -60,7 +60,7 @@ impl Goal {
 
 /// Result of an adaptive search.
 pub(super) struct Adapted {
-    /// By row and output; with sensitivities only where the box was not split.
+    /// Estimates by row and output; with sensitivities only if the box was not split.
     pub found: Vec<Estimate>,
     /// Simulations of these and those before.
     pub simulations: usize,
@@ -114,7 +114,7 @@ pub(super) fn search(
 }
 
 impl<'r> Adaptation<'r> {
-    /// Before the first simulation.
+    /// The search before the first simulation.
     pub fn new(ensemble: &'r dyn Ensemble, goal: Goal, validation: &'r Validation, keep: bool) -> Self {
         let every = goal.rows().div_ceil(TUNING.checked_rows).max(1);
         Self {
@@ -132,7 +132,7 @@ impl<'r> Adaptation<'r> {
         }
     }
 
-    /// Over lines through a box, before the first simulation.
+    /// The search over lines through a box, before the first simulation.
     pub fn over(combined: &'r Combined<'r>, goal: Goal, validation: &'r Validation) -> Self {
         Self { combined: Some(combined), ..Self::new(combined, goal, validation, false) }
     }

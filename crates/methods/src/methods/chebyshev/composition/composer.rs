@@ -24,12 +24,12 @@ pub struct NodeMotions<'a> {
 /// One mechanism's closures, and the functions that are evaluated through them.
 pub struct Composer<'a> {
     ensemble: &'a dyn Ensemble,
-    /// Those used so far.
+    /// Closures used so far.
     closures: Vec<Box<dyn Closure + 'a>>,
 }
 
 impl<'a> Composer<'a> {
-    /// Without any closure yet.
+    /// Composer without any closure yet.
     pub fn new(ensemble: &'a dyn Ensemble) -> Self {
         Self { ensemble, closures: Vec::new() }
     }

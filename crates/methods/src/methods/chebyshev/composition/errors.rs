@@ -1,4 +1,4 @@
-//! How far the ends of composed ranges may be off: by the surrogate's errors, and by the time steps'.
+//! Errors of the ends of composed ranges: the surrogate's, and the time steps'.
 
 use std::convert::Infallible;
 

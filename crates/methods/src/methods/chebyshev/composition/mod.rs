@@ -76,7 +76,7 @@ struct Sorted {
     composed: Vec<usize>,
     /// or they differ from the values that follow from the coordinates.
     lost: Vec<usize>,
-    /// How far each is from its own polynomial.
+    /// Distance of each from its own polynomial.
     defects: Vec<f64>,
 }
 
@@ -110,7 +110,7 @@ impl<'r> Row<'r> {
         self.surrogate
     }
 
-    /// How many outputs there are.
+    /// Number of outputs.
     pub fn outputs(&self) -> usize {
         self.ensemble.outputs()
     }
@@ -199,12 +199,12 @@ impl<'r> Row<'r> {
         sorted
     }
 
-    /// By how much an output and its own polynomial may differ and still be the same.
+    /// Largest difference of an output from its own polynomial with which they are the same.
     fn alike(&self, output: usize, rounding: &[f64]) -> f64 {
         TUNING.alike * Range::of(self.own_samples(output)).width() + rounding[output]
     }
 
-    /// How far outputs, as they follow from the coordinates, are from the ends of these ranges where those are
+    /// Distances of outputs, as they follow from the coordinates, from the ends of these ranges where those are
     /// attained.
     fn apart_at_ends(&self, outputs: &[usize], found: &[Extent]) -> Vec<f64> {
         let ends = self.at_own_ends(outputs, found, &[Moves::default()]);
@@ -261,8 +261,8 @@ impl<'r> Row<'r> {
         compared.iter().zip(values).any(differs)
     }
 
-    /// Where outputs are known to be large or small, block by block of those that are searched together: the samples
-    /// with the least and the largest values of each output, some apart from each other, and the best corners.
+    /// Points at which outputs are known to be large or small, block by block of those that are searched together:
+    /// those with the least and the largest values of each output, some apart from each other, and the best corners.
     fn seeds(&self) -> Vec<Vec<Vec<f64>>> {
         let every: Vec<usize> = (0..self.ensemble.outputs()).collect();
         // In every row: the row before knows the corner that was best there, and where the best changes to another, no

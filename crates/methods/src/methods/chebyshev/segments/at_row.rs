@@ -9,7 +9,7 @@ use super::surrogate::Point;
 use super::tuning::TUNING;
 use crate::numerics::{STEP_NODES, SegmentMotions, Surrogate, SurrogateWork, largest, nearest_step, step_nodes};
 
-/// Where polynomials of values come from.
+/// Source of the polynomials of values.
 #[derive(Clone, Copy)]
 pub(super) enum PolynomialSource<'e> {
     Grid(&'e Surrogate),

@@ -8,9 +8,9 @@ use crate::numerics::{LeastSquares, SparseBasis, largest, truncation};
 /// Terms in ξ.
 #[derive(Clone, Debug)]
 pub(super) enum Basis {
-    /// Those of a grid's surrogate.
+    /// Terms of a grid's surrogate.
     Grid(SparseBasis),
-    /// Those of a part of the box, which are fitted to samples in it.
+    /// Terms in a part of the box, which are fitted to samples in it.
     Fitted(Fitted),
     /// Powers of distances from a centre, those of a jet.
     Taylor { monomials: Monomials, centre: Vec<f64> },
@@ -40,7 +40,7 @@ pub(super) struct Fitted {
 pub(super) struct Level {
     powers: Powers,
     coefficients: Vec<f64>,
-    /// How far its zero may be from the true one, in its own units.
+    /// Largest distance of its zero from the true one, in its own units.
     error: f64,
 }
 
@@ -84,8 +84,9 @@ impl Powers {
 }
 
 impl Level {
-    /// Through the zeros of margins that are given at samples. Where one side's are no continuation of the other's, no
-    /// polynomial has both: then it is fitted to shares of the largest margin on each side, or to the sides alone.
+    /// Fits a level to the zeros of margins that are given at samples. Where one side's are no continuation of the
+    /// other's, no polynomial has both: then it is fitted to shares of the largest margin on each side, or to the sides
+    /// alone.
     pub fn through(samples: &[(&[f64], f64)]) -> Option<Self> {
         let margins: Vec<f64> = samples.iter().map(|(_, margin)| *margin).collect();
         let own = Self::of_values(samples, &margins)?;
@@ -133,7 +134,7 @@ impl Level {
         Self { powers: Powers(vec![exponents]), coefficients: vec![1.0], error: 0.0 }
     }
 
-    /// How far its zero may be from the true one, in its own units.
+    /// Largest distance of its zero from the true one, in its own units.
     pub fn error(&self) -> f64 {
         self.error
     }
@@ -180,19 +181,19 @@ impl End {
         self.offset < 0.0
     }
 
-    /// How far the surface may be from the true one; zero for a surface that only divides a part.
+    /// Largest distance of the surface from the true one; zero for a surface that only divides a part.
     pub fn error(&self) -> f64 {
         if self.offset == 0.0 { self.level.error } else { 0.0 }
     }
 }
 
 impl Fitted {
-    /// For samples at these ξ.
+    /// Terms for samples at these ξ.
     pub fn new(degree: usize, depths: &[Level], samples: &[Vec<f64>]) -> Self {
         Self::about(degree, depths, None, samples)
     }
 
-    /// With the root of a depth instead of the ξ along an axis.
+    /// Terms with the root of a depth instead of the ξ along an axis.
     pub fn across(degree: usize, depth: &Level, axis: usize, samples: &[Vec<f64>]) -> Self {
         Self::about(degree, &[], Some((axis, depth.clone())), samples)
     }

@@ -18,7 +18,7 @@ pub(super) struct Growth {
 struct Scales {
     /// Shortest segment, s.
     shortest: f64,
-    /// By line.
+    /// Spans by line.
     spans: Vec<f64>,
 }
 

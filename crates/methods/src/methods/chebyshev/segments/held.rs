@@ -23,11 +23,11 @@ pub(super) struct AxisLines<'p> {
     points: &'p [Vec<f64>],
     /// By axis, the samples on each line along it.
     of_axes: Vec<Vec<Vec<usize>>>,
-    /// Those at −1, 0 and 1 along all axes; none if one of them is missing.
+    /// Samples at −1, 0 and 1 along all axes; none if one of them is missing.
     lattice: Vec<usize>,
 }
 
-/// By how much polynomials miss such samples in a row.
+/// Differences of polynomials from such samples in a row.
 pub(super) struct Misses<'l> {
     lines: &'l AxisLines<'l>,
     /// Predicted less simulated outputs (output, sample); NaN at samples that are not in the part.
@@ -38,7 +38,7 @@ pub(super) struct Misses<'l> {
 struct Missed<'m> {
     /// Misses on the lattice; none if parabolas do not give those of other samples.
     on_lattice: Vec<f64>,
-    /// How far other samples are from the parabolas, where there are any.
+    /// Largest distance of other samples from the parabolas, if there are any.
     rest: Option<f64>,
     misses: &'m Misses<'m>,
     output: usize,
@@ -76,7 +76,7 @@ impl<'p> AxisLines<'p> {
 }
 
 impl<'l> Misses<'l> {
-    /// In a row, whose outputs at the samples (output, sample) have been simulated; `at` are their points.
+    /// Misses in a row, whose outputs at the samples (output, sample) have been simulated; `at` are their points.
     pub fn new(
         lines: &'l AxisLines<'l>,
         row: &SegmentRow,
@@ -91,7 +91,7 @@ impl<'l> Misses<'l> {
         Self { lines, values: (0..row.outputs).flat_map(of_output).collect() }
     }
 
-    /// Those of an output, which are no larger than this error.
+    /// Misses of an output, whose rest is to be less than this error.
     fn of(&self, output: usize, error: f64) -> Missed<'_> {
         let lattice = &self.lines.lattice;
         let count = self.lines.points.len();
@@ -158,7 +158,7 @@ impl Looked {
         let surrogate = &row.piece.surrogate;
         let xi = &corner.point.xi;
         // Where an event passes through the part, errors change with the share of the segment, too: in a step as a
-        // polynomial does by the square of its degree. Those in other segments say nothing of its own.
+        // polynomial does by the square of its degree. Errors in other segments say nothing of those in its own.
         let passes = self.places.iter().any(|(segment, _)| *segment != corner.segment);
         let by_share = passes && !row.has_branch(corner.segment);
         let (share, step) = surrogate.share(corner.point, corner.segment, row.time);

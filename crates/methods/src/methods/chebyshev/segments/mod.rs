@@ -64,7 +64,7 @@ use seeds::Lattice;
 use surrogate::Point;
 use tuning::TUNING;
 
-/// By segments between events, where the ensemble's motions are cut there.
+/// Bounds by segments between events, if the ensemble's motions are cut there.
 ///
 /// # Errors
 /// Where a sample cannot be assembled, or a closure not be compiled.
@@ -85,7 +85,7 @@ pub(super) fn of_degree(
     }
 }
 
-/// To the degree that the goal asks for, by segments between events, where the ensemble's motions are cut there.
+/// Bounds to the degree that the goal asks for, by segments between events, if the ensemble's motions are cut there.
 ///
 /// # Errors
 /// Where a sample cannot be assembled, or a closure not be compiled.
@@ -121,7 +121,7 @@ pub(super) fn adapted(
     Ok(best)
 }
 
-/// As `adapted`, for many parameters: terms are added until the goal is met.
+/// Does the same as `adapted` for many parameters: terms are added until the goal is met.
 fn grown(
     ensemble: &dyn Ensemble,
     goal: &Goal,
@@ -189,7 +189,7 @@ pub(in crate::methods) fn beside_scan(
     of_degree(ensemble, &surrogate, &points, validation, Keep::Nothing)
 }
 
-/// By jets in segments between events, where the ensemble's motions are cut there.
+/// Bounds by jets in segments between events, if the ensemble's motions are cut there.
 ///
 /// # Errors
 /// Where a sample cannot be assembled, or a closure not be compiled, and at an interruption.

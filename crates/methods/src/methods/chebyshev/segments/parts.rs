@@ -1,4 +1,4 @@
-//! Which samples are in which part of the box.
+//! The samples in each part of the box.
 
 use super::basis::{End, Level};
 use super::tuning::TUNING;

@@ -39,7 +39,7 @@ pub(super) struct PieceMotions {
 }
 
 impl Piece {
-    /// With the same errors everywhere.
+    /// A piece with the same errors everywhere.
     pub fn new(
         surrogate: SegmentSurrogate,
         errors: SegmentErrors,
@@ -51,7 +51,7 @@ impl Piece {
         Self { surrogate, told, samples, depths: Vec::new(), motions }
     }
 
-    /// From polynomials that were fitted to samples, with their errors at these, given the predictions of each by
+    /// A piece of polynomials that were fitted to samples, with their errors at these, given the predictions of each by
     /// polynomials through all others.
     pub fn fitted(
         surrogate: SegmentSurrogate,

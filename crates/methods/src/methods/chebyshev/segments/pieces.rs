@@ -28,7 +28,7 @@ pub(super) struct Pieces {
 }
 
 impl Pieces {
-    /// From the motions of the grid's samples; `None` where validation samples cannot be cut.
+    /// Pieces from the motions of the grid's samples; `None` if validation samples cannot be cut.
     ///
     /// # Errors
     /// Where a sample cannot be assembled.
@@ -67,9 +67,9 @@ impl Pieces {
         })
     }
 
-    /// From the jet of a box of one word, with errors at validation samples. Behind a surface on which an event is
-    /// grazed motions go with a root, which no jet follows: in boxes of several words polynomials are fitted, and if
-    /// the centre has no jet, too. `None` if motions are not cut.
+    /// Pieces from the jet of a box of one word, with errors at validation samples. Behind a surface on which an
+    /// event is grazed motions go with a root, which no jet follows: in boxes of several words polynomials are fitted,
+    /// and if the centre has no jet, too. `None` if motions are not cut.
     ///
     /// # Errors
     /// Where a sample cannot be assembled.
@@ -104,8 +104,8 @@ impl Pieces {
         Ok(found.map(|found| Self { added: found.added + grid.samples().len(), ..found }))
     }
 
-    /// The same of a box of one word, whose parts are divided in halves along the axes in which jets lack most: each
-    /// has a jet about its middle. `None` where a part is of several words, or is no jet's.
+    /// Divides the pieces of a box of one word in halves along the axes in which jets lack most: each has a jet about
+    /// its middle. `None` if a piece is of several words, or is no jet's.
     ///
     /// # Errors
     /// Where a sample cannot be assembled.

@@ -38,7 +38,7 @@ pub(super) struct BoxRow<'r> {
 /// The same for sensitivities.
 pub(super) struct SensedRow<'r> {
     pub row: &'r BoxRow<'r>,
-    /// By which instants and motions of a box of one word are expanded.
+    /// The surrogate by which instants and motions of a box of one word are expanded.
     pub grid: &'r Surrogate,
 }
 
@@ -75,12 +75,12 @@ impl SegmentRow<'_> {
         self.motion.is_some_and(|own| own.is_common)
     }
 
-    /// The same at the row's time of points in segments of their own.
+    /// Outputs at the row's time at points, each in its own segment.
     pub fn outputs_in(&self, places: &[(usize, Point)]) -> Vec<f64> {
         self.outputs_on(&places.iter().map(|(segment, point)| (point, *segment, self.time)).collect::<Vec<_>>())
     }
 
-    /// The same of points in the segments that they are in then.
+    /// Outputs at the row's time at points, in the segments that they are in then.
     pub fn outputs_at(&self, points: &[Point]) -> Vec<f64> {
         let at: Vec<_> = points.iter().map(|point| (point, point.segment(self.time), self.time)).collect();
         self.outputs_on(&at)

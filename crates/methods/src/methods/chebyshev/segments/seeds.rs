@@ -9,13 +9,13 @@ use crate::numerics::{corners, spread};
 /// Points of the box, and which of them are joined by edges.
 pub(super) struct Lattice {
     points: Vec<Point>,
-    /// How many of the points, the first, are where edges meet the surfaces that end the part.
+    /// Number of the first points, at which edges meet the surfaces that end the part.
     on_ends: usize,
     edges: Vec<(usize, usize)>,
 }
 
 impl Lattice {
-    /// With `others` in addition to the lattice's own points.
+    /// Lattice with `others` in addition to its own points.
     pub fn new(surrogate: &SegmentSurrogate, others: &[Vec<f64>], k: usize) -> Self {
         let Some(&intervals) = TUNING.intervals.get(k.saturating_sub(1)) else {
             let xi = [&corners(k, TUNING.corners_of_lattice)[..], &spread(k, TUNING.spread_a_parameter * k), others]

@@ -37,7 +37,7 @@ pub(super) struct Point {
     pub xi: Vec<f64>,
     /// Values of the basis.
     terms: Vec<f64>,
-    /// When segments begin, and when the last ends, s.
+    /// Times at which segments begin, and at which the last ends, s.
     pub times: Vec<f64>,
     /// Distance from each surface that ends the part, in its own units; negative beyond it.
     pub margins: Vec<f64>,
@@ -85,7 +85,7 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 }
 
 impl SegmentSurrogate {
-    /// From a function that gives the coefficients of values at the motions' samples, line by line.
+    /// Surrogate from a function that gives the coefficients of values at the motions' samples, line by line.
     pub fn new(
         basis: Basis,
         ends: Vec<End>,
@@ -99,12 +99,12 @@ impl SegmentSurrogate {
         Self { basis, ends, steps: motions.steps.clone(), times, nodes, lines, squares: None, reach: Vec::new() }
     }
 
-    /// The same, whose coefficients were fitted by these.
+    /// Adds the fit of the coefficients.
     pub fn fitted_by(self, squares: LeastSquares) -> Self {
         Self { squares: Some(squares), ..self }
     }
 
-    /// The same with the samples that give the errors of a jet.
+    /// Sets the samples that give the errors of a jet.
     pub fn told_at(self, xi: &[Vec<f64>]) -> Self {
         let Basis::Taylor { centre, .. } = &self.basis else { return self };
         let of_axis = |(axis, centre): (usize, &f64)| largest(xi.iter().map(|xi| xi[axis] - centre));
@@ -112,7 +112,7 @@ impl SegmentSurrogate {
         Self { reach, ..self }
     }
 
-    /// How far some ξ is outside of the samples that give errors: the square of the factor on these by which a fit, or
+    /// Leverage of some ξ outside of the samples that give errors: the square of the factor on these by which a fit, or
     /// a jet, may be off there; at most 1 for a fit among them.
     pub fn leverage(&self, xi: &[f64]) -> f64 {
         if let Basis::Taylor { monomials, centre } = &self.basis {
@@ -274,7 +274,7 @@ impl Point {
 }
 
 impl SegmentErrors {
-    /// At samples that were cut at the same events.
+    /// Errors at samples that were cut at the same events.
     pub fn new(surrogate: &SegmentSurrogate, xi: &[Vec<f64>], direct: &SegmentMotions) -> Self {
         let points = surrogate.points(xi.to_vec());
         let terms = surrogate.basis.len();

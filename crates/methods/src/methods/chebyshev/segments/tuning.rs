@@ -35,7 +35,7 @@ tuning! {
         returns: usize = 4, moves "Chebyshev bounds through events";
         /// Share of a segment by which a surface may be missed.
         missed: f64 = 1e-11, moves "Chebyshev bounds through events";
-        /// By how much of a segment a seed may be beyond its ends.
+        /// Distance of a seed beyond the ends of a segment, as a share of it, at most.
         beyond_of_seed: f64 = 1e-6, moves "Chebyshev bounds through events";
         /// A point is moved back inside of a surface by a little more than it is beyond: by this factor.
         moved_back: f64 = 1.001, moves "Chebyshev bounds through events";
