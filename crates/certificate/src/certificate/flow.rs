@@ -46,7 +46,7 @@ pub struct Accelerations {
 
 impl Accelerations {
     /// Accelerations from equations F(y, x) = 0 for x = (w, λ): their derivatives by x and by y over the tube,
-    /// `inverse`, which may be any matrix, for those by x, and bounds of F at the approximation. `None` where
+    /// `inverse`, which may be any matrix, for those by x, and bounds of F at the approximation. `None` if
     /// derivatives by x may be singular.
     pub fn new(
         space: &ModelSpace,

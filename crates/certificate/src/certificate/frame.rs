@@ -47,7 +47,7 @@ impl Frame {
     }
 
     /// The frame at the end of a cell. `jump` bounds how far the next approximation begins from the end of this one.
-    /// `None` where B has no inverse that can be proven.
+    /// `None` if B has no inverse that can be proven.
     pub fn advance(&self, space: &Space, flow: &Flow, jump: &[f64]) -> Option<Self> {
         let of_box = &space.box_of;
         let transition = matrix_at(space, &flow.transition, 1.0);

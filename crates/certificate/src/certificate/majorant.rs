@@ -5,7 +5,7 @@ use symdiff::taylor_model::up;
 use super::matrix::Bounds;
 use super::tuning::TUNING;
 
-/// An s with start + time (A s + rate) ≤ s, or `None` where none is found.
+/// An s with start + time (A s + rate) ≤ s, or `None` if none is found.
 ///
 /// It bounds |e| where |e| ≤ start at first and |e|' ≤ A |e| + rate over that time: start + t (A s + rate) solves
 /// x' ≥ A x + rate as long as it is below s, and A's entries are not negative.

@@ -84,7 +84,7 @@ struct Open {
 struct Enclosed {
     piece: ParameterBox,
     ranges: Vec<Range>,
-    /// The same since the row before; empty where that is not known.
+    /// The same since the row before; empty if that is not known.
     between: Vec<Range>,
     lost: Option<Lost>,
     /// The proof for the certificate.

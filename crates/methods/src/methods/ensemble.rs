@@ -226,7 +226,7 @@ pub trait Ensemble: Sync {
     /// Whether an output's formula jumps.
     fn jumps(&self, output: usize) -> bool;
 
-    /// Functions of parameters through which alone these act, no parameter in two of them; none where that is
+    /// Functions of parameters through which alone these act, no parameter in two of them; none if that is
     /// not known.
     fn combinations(&self) -> Vec<Combination<'_>> {
         Vec::new()
@@ -237,7 +237,7 @@ pub trait Ensemble: Sync {
         EMPTY
     }
 
-    /// Ends of the outputs over the whole box that were followed along gradients, where they were.
+    /// Ends of the outputs over the whole box that were followed along gradients, if there are any.
     fn followed(&self) -> Option<&FollowedEnds> {
         None
     }
@@ -257,7 +257,7 @@ pub trait Ensemble: Sync {
     /// as `sampling` says, or at an interruption.
     ///
     /// # Errors
-    /// Where a sample cannot be assembled; [`Interrupted`] where half of the rows are of no use.
+    /// If a sample cannot be assembled; [`Interrupted`] where half of the rows are of no use.
     fn simulate(
         &self,
         samples: &[Sample],
@@ -269,16 +269,16 @@ pub trait Ensemble: Sync {
     /// velocities (2n lines) in each, line by line, sample by sample. `None` if steps are too coarse for that.
     ///
     /// # Errors
-    /// Where a sample cannot be assembled.
+    /// If a sample cannot be assembled.
     fn dense_motions(&self, samples: &[Sample]) -> Result<Option<DenseMotions>, EnsembleError> {
         let _ = samples;
         Ok(None)
     }
 
-    /// Motions of samples, cut at the events that they meet; `None` where motions are not cut.
+    /// Motions of samples, cut at the events that they meet; `None` if motions are not cut.
     ///
     /// # Errors
-    /// Where a sample cannot be assembled.
+    /// If a sample cannot be assembled.
     fn segments(&self, samples: &[Sample]) -> Result<Option<CutMotions>, EnsembleError> {
         let _ = samples;
         Ok(None)
@@ -288,7 +288,7 @@ pub trait Ensemble: Sync {
     /// returned instead of samples' values, after the index of the word; `None` if motions are not cut.
     ///
     /// # Errors
-    /// Where the sample cannot be assembled.
+    /// If the sample cannot be assembled.
     fn segment_jets(&self, space: &JetSpace, xi: &[f64]) -> Result<Option<(usize, SegmentMotions)>, EnsembleError> {
         let _ = (space, xi);
         Ok(None)
@@ -297,7 +297,7 @@ pub trait Ensemble: Sync {
     /// Simulates all samples of a scan's grid to the end, and bounds the outputs over them.
     ///
     /// # Errors
-    /// Where a sample cannot be assembled.
+    /// If a sample cannot be assembled.
     fn scan(&self, grid: &ScanGrid) -> Result<(ScanBounds, Simulated), EnsembleError> {
         scan(self, grid, |samples, sampling, reduce| self.simulate(samples, sampling, reduce))
     }
@@ -306,7 +306,7 @@ pub trait Ensemble: Sync {
     /// a block and their coefficients (row, output, monomial).
     ///
     /// # Errors
-    /// Where the middle of the box cannot be assembled.
+    /// If the middle of the box cannot be assembled.
     fn jets(&self, space: &JetSpace, reduce: &mut dyn FnMut(Rows<usize>, &[f64])) -> Result<Simulated, EnsembleError>;
 
     /// Obstacle to this proof, if there is one.
@@ -329,7 +329,7 @@ pub trait Ensemble: Sync {
     /// The loop closure over a choice of independent coordinates.
     ///
     /// # Errors
-    /// Where it cannot be compiled.
+    /// If it cannot be compiled.
     fn closure(&self, independent: Vec<usize>) -> Result<Box<dyn Closure + '_>, EnsembleError>;
 }
 

@@ -55,7 +55,7 @@ struct KeptBox {
 pub struct KeptRow {
     /// s
     pub time: f64,
-    /// The independent coordinates; none where only outputs are expanded.
+    /// The independent coordinates; none if only outputs are expanded.
     pub independent: Vec<usize>,
     /// Coefficients of each of the 2n lines of the motion, then of each output.
     pub coefficients: Vec<f64>,
@@ -178,15 +178,15 @@ impl KeptSurrogate {
         self.boxes.len() == 1 && self.boxes[0].rows[row].own[output]
     }
 
-    /// The polynomial through an output's own samples in a row: its terms, and the coefficients before them. Where the
-    /// box was not split.
+    /// The polynomial through an output's own samples in a row: its terms, and their coefficients. `None` unless there
+    /// is exactly one box.
     pub fn polynomial(&self, row: usize, output: usize) -> Option<(&SparseBasis, &[f64])> {
         let [part] = self.boxes.as_slice() else { return None };
         Some((&part.basis, part.rows[row].of_output(output, part.basis.len())))
     }
 
     /// Values of the polynomials through outputs' own samples in one row, at samples of the box, output by output.
-    /// `None` where the box was split.
+    /// `None` if the box was split.
     pub fn own_values<P: AsRef<[f64]>>(&self, row: usize, outputs: &[usize], samples: &[P]) -> Option<Vec<f64>> {
         let [part] = self.boxes.as_slice() else { return None };
         let points = part.points(samples.iter().map(AsRef::as_ref));
@@ -198,7 +198,7 @@ impl KeptSurrogate {
         Some(values)
     }
 
-    /// Outputs in one row at samples of the box (values of the parameters in their units), output by output; NaN where
+    /// Outputs in one row at samples of the box (values of the parameters in their units), output by output; NaN if
     /// a closure has no solution. `closures` has one for every choice of [`independent`](Self::independent).
     pub fn values<'c, P: AsRef<[f64]>>(
         &self,

@@ -121,7 +121,7 @@ pub trait BoundingMethod: Debug {
     /// Adjusts the request to the problem.
     ///
     /// # Errors
-    /// Where the method cannot bound it.
+    /// If the method cannot bound it.
     fn fit(&mut self, _problem: &Problem) -> Result<(), Refusal> {
         Ok(())
     }
@@ -132,7 +132,7 @@ pub trait BoundingMethod: Debug {
     /// Adjusts the request to a part of the box.
     fn restrict(&mut self, _part: &ParameterBox, _whole: &ParameterBox) {}
 
-    /// Samples that it asks for; `None` where that depends on the response.
+    /// Samples that it asks for; `None` if that depends on the response.
     fn samples(&self) -> Option<f64> {
         Some(0.0)
     }
@@ -160,7 +160,7 @@ pub trait BoundingMethod: Debug {
     /// Bounds all outputs.
     ///
     /// # Errors
-    /// Where the ensemble has no result at all.
+    /// If the ensemble has no result at all.
     fn bound(
         &self,
         ensemble: &dyn Ensemble,
@@ -317,10 +317,10 @@ impl BoundsRequest {
         self.methods().into_iter().map(|(_, method)| method.degree()).max().unwrap_or(0)
     }
 
-    /// The request adjusted to a problem, with these methods instead of its own where they are given.
+    /// The request adjusted to a problem, with these methods instead of its own if they are given.
     ///
     /// # Errors
-    /// Where a method cannot bound it.
+    /// If a method cannot bound it.
     pub fn fitted(&self, methods: Option<&[Method]>, problem: &Problem) -> Result<Self, Refusal> {
         let mut request = self.clone();
         for method in Method::ALL {

@@ -28,13 +28,13 @@ pub struct MethodResult {
     pub sensitivities: Vec<Vec<Option<Sensitivity>>>,
     /// Rows in which something is known.
     pub reached: usize,
-    /// Why the bounds end early, where that is not a sample's stop.
+    /// Reason why the bounds end early, if it is not a sample's stop.
     pub note: Option<String>,
     /// Number of simulations.
     pub simulations: usize,
-    /// Highest degree in each parameter, where the tolerance decided it.
+    /// Highest degree in each parameter, if the tolerance decided it.
     pub order: Option<Vec<usize>>,
-    /// Number of boxes into which the box was split, where the tolerance decided it.
+    /// Number of boxes into which the box was split, if the tolerance decided it.
     pub boxes: Option<usize>,
     /// Outputs that in some row do not follow from the coordinates and were expanded themselves.
     pub expanded: Vec<usize>,
@@ -55,7 +55,7 @@ pub struct Estimate {
     pub error: f64,
     /// The part of the error that no sample makes smaller: that of the search for the ends of an output that jumps.
     pub of_search: f64,
-    /// Error of the time steps; NaN where not asked for.
+    /// Error of the time steps; NaN if not asked for.
     pub step_error: f64,
     /// Sensitivities, if they are asked for.
     pub sensitivity: Option<Sensitivity>,

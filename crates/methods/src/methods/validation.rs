@@ -32,7 +32,7 @@ impl ValidationTable {
     /// Simulates samples.
     ///
     /// # Errors
-    /// Where one cannot be assembled.
+    /// If one cannot be assembled.
     pub fn of(
         ensemble: &dyn Ensemble,
         samples: &[Sample],
@@ -61,7 +61,7 @@ impl ValidationTable {
         Self { samples: indices.len(), values, ..*self }
     }
 
-    /// One output's values in one row; NaN where it was not reached.
+    /// One output's values in one row; NaN if it was not reached.
     pub fn at(&self, row: usize, output: usize) -> Vec<f64> {
         let first = (row * (self.motions + self.outputs) + self.motions + output) * self.samples;
         match self.values.get(first..first + self.samples) {
@@ -76,7 +76,7 @@ impl ValidationTable {
         self.values.chunks_exact(lines.max(1)).map(move |row| &row[motions..])
     }
 
-    /// The samples' motions (line, sample) in one row that was reached, where they were observed.
+    /// The samples' motions (line, sample) in one row that was reached, if they were observed.
     pub fn motion(&self, row: usize) -> &[f64] {
         let first = row * (self.motions + self.outputs) * self.samples;
         &self.values[first..][..self.motions * self.samples]
@@ -114,7 +114,7 @@ impl ValidationTable {
         self.values.len() / ((self.motions + self.outputs) * self.samples)
     }
 
-    /// Width of an output's range over all rows and some samples; zero where that is less than `least`, or than
+    /// Width of an output's range over all rows and some samples; zero if that is less than `least`, or than
     /// rounding of the values.
     fn span(&self, output: usize, samples: &[usize], least: f64) -> f64 {
         let lines = self.values.chunks_exact(self.samples);
@@ -126,7 +126,7 @@ impl ValidationTable {
         if upper - lower <= least { 0.0 } else { (upper - lower).max(0.0) }
     }
 
-    /// Spans of all outputs, given some samples with shorter steps; zero where an output is conserved: these remove
+    /// Spans of all outputs, given some samples with shorter steps; zero if an output is conserved: these remove
     /// most of its change.
     fn spans(&self, halved: &Self, odd: &OddSteps, ensemble: &dyn Ensemble) -> Vec<f64> {
         let first: Vec<usize> = (0..odd.table.samples).collect();
@@ -221,7 +221,7 @@ pub struct Validation {
     pub effort: Effort,
     /// Outcome of those with the schedule's steps.
     pub simulated: Simulated,
-    /// Width of each output's range over all rows and samples; zero where it is constant.
+    /// Width of each output's range over all rows and samples; zero if it is constant.
     pub spans: Vec<f64>,
 }
 
@@ -252,7 +252,7 @@ impl Validation {
     /// Simulates them, for surrogates of this degree at most; `ends` are further ξ at which halved steps count.
     ///
     /// # Errors
-    /// Where one cannot be assembled.
+    /// If one cannot be assembled.
     pub fn run(
         ensembles: Ensembles,
         observed: Observed,
@@ -295,7 +295,7 @@ impl Validation {
     /// and is simulated with each step halved.
     ///
     /// # Errors
-    /// Where it cannot be assembled.
+    /// If it cannot be assembled.
     pub fn of_nominal(ensembles: Ensembles, nominal: &[Vec<Range>], reached: usize) -> Result<Self, EnsembleError> {
         let ensemble = ensembles.direct;
         let points = validation(0, 0);

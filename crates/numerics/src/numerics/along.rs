@@ -4,7 +4,7 @@ use super::tuning::TUNING;
 
 /// A sample among those along one axis.
 pub(super) struct Along {
-    /// Values from four samples before to four after; zero where none is known.
+    /// Values from four samples before to four after; zero if none is known.
     values: [f64; 9],
     /// Second differences at all of them but the first and the last.
     bends: [f64; 7],

@@ -42,7 +42,7 @@ impl Power {
         }
     }
 
-    /// The multiplier of a slope s < 0 at which that is where this size is.
+    /// The multiplier of a slope s < 0 with which this size is stationary.
     fn multiplier(self, cost: f64, slope: f64, size: f64) -> f64 {
         match self {
             Self::First => cost / (-slope * size * size),

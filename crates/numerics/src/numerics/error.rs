@@ -40,7 +40,7 @@ pub struct BandError {
     pub coarse: Vec<bool>,
 }
 
-/// Largest difference between a surrogate and the validation samples; unknown where either value is.
+/// Largest difference between a surrogate and the validation samples; unknown if either value is.
 pub fn surrogate_error(surrogate: &[f64], direct: &[f64]) -> f64 {
     largest(surrogate.iter().zip(direct).map(|(surrogate, direct)| surrogate - direct))
 }

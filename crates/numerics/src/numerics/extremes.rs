@@ -21,7 +21,7 @@ const SIGNS: [f64; 2] = [-1.0, 1.0];
 
 /// Extremes of functions over [−1, 1]^k at once: `evaluate` gives their values at some ξ, function by function. The
 /// first lattice, of `lattices`, has `intervals` ≥ 2 along each axis. Differences of at most `least`, a number for each
-/// function and at least its rounding, are not searched for. Unknown where a value on a lattice is NaN.
+/// function and at least its rounding, are not searched for. Unknown if a value on a lattice is NaN.
 pub fn extremes(
     lattices: &Lattices,
     intervals: &[usize],
@@ -258,7 +258,7 @@ struct End {
     /// Neighbourhood in which the peak is searched for, and where it is believed to be.
     around: Peak,
     xi: Vec<f64>,
-    /// The best value seen, and where; NaN where one was not.
+    /// The best value seen, and where; NaN if one was not.
     best: f64,
     best_xi: Vec<f64>,
     /// Gain of the last step of the search.

@@ -14,7 +14,7 @@ pub struct Peak {
 }
 
 impl Peak {
-    /// Around a point; a little away from it where its neighbours would lie outside the box.
+    /// Neighbourhood of a point, moved a little from it if its neighbours would lie outside the box.
     pub fn new(mut xi: Vec<f64>, spacing: Vec<f64>) -> Self {
         for (xi, spacing) in xi.iter_mut().zip(&spacing) {
             *xi = xi.clamp(spacing - 1.0, 1.0 - spacing);
@@ -42,7 +42,8 @@ impl Peak {
         xi
     }
 
-    /// Around the peak that was found: nearer neighbours, or further ones where it lies at the limit of their reach.
+    /// Neighbourhood of the peak that was found: nearer neighbours, or further ones if it lies at the limit of their
+    /// reach.
     #[must_use]
     pub fn next(&self, xi: &[f64]) -> Self {
         let at_limit = |axis: usize| (xi[axis] - self.center[axis]).abs() > 0.99 * self.spacing[axis];
@@ -56,7 +57,7 @@ impl Peak {
         )
     }
 
-    /// Around a point, with nearer neighbours.
+    /// Neighbourhood of a point, with nearer neighbours.
     #[must_use]
     pub fn nearer(&self, xi: &[f64]) -> Self {
         Self::new(xi.to_vec(), self.spacing.iter().map(|spacing| TUNING.nearer * spacing).collect())

@@ -35,7 +35,7 @@ pub enum RangeKind {
     Tight,
 }
 
-/// Grid intervals along each axis; `None` where the grid would be too large.
+/// Grid intervals along each axis; `None` if the grid would be too large.
 fn intervals(orders: &[usize]) -> Option<Vec<usize>> {
     let active = orders.iter().filter(|&&n| n > 0).count();
     let least = if active == 0 { 1 } else { *TUNING.min_intervals.get(active - 1)? };

@@ -42,7 +42,7 @@ struct Piece {
 }
 
 /// Integrals of functions that are nowhere negative, over the intervals between `breaks` (ascending), each to the share
-/// `relative` of it. `values` puts the functions' values at a point into a list of `count`. `None` where the intervals
+/// `relative` of it. `values` puts the functions' values at a point into a list of `count`. `None` if the intervals
 /// do not suffice, or a value is not finite.
 pub fn integrals(
     breaks: &[f64],

@@ -1,6 +1,6 @@
 //! Intervals, and the range over two parts of a box with its error.
 
-/// An interval; NaN at both ends where the bounded quantity is NaN.
+/// An interval; NaN at both ends if the bounded quantity is NaN.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Range {
     /// Lower end.

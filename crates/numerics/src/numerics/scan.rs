@@ -92,7 +92,7 @@ impl ScanBounds {
         );
     }
 
-    /// Bounds of an output at a time, over the samples that are numbers; unknown where none is.
+    /// Bounds of an output at a time, over the samples that are numbers; unknown if none is.
     pub fn range(&self, time: usize, output: usize) -> Range {
         let [least, largest] = self.extremes[time * self.outputs + output];
         if least.value <= largest.value { Range { lower: least.value, upper: largest.value } } else { Range::UNKNOWN }
@@ -108,7 +108,7 @@ impl ScanBounds {
     }
 }
 
-/// The least and the largest of those values that are numbers; an infinite range where none is.
+/// The least and the largest of those values that are numbers; an infinite range if none is.
 fn ends(values: &[f64]) -> [f64; 2] {
     let (mut low, mut high) = ([f64::INFINITY; LANES], [f64::NEG_INFINITY; LANES]);
     let (chunks, rest) = values.as_chunks::<LANES>();

@@ -37,8 +37,7 @@ impl SobolDecomposition {
         Self { basis: basis.clone(), conversion: from_chebyshev(highest.into()), cause }
     }
 
-    /// SobolIndices in the variance of a polynomial; `None` where it does not vary, or a coefficient is infinite or
-    /// NaN.
+    /// Sobol indices of a polynomial; `None` if it does not vary, or if a coefficient is infinite or NaN.
     pub fn indices(&self, coefficients: &[f64]) -> Option<SobolIndices> {
         assert_eq!(coefficients.len(), self.basis.len(), "coefficients of another shape");
         let k = self.basis.dimension();

@@ -24,7 +24,7 @@ pub struct SparseGrid {
 
 /// Size that is expected of an index: the least that follows from the indices before it, as for a power of Σ aᵢ ξᵢ,
 /// where from ξ^(l − eᵢ) to ξ^l the multinomial coefficient times the weights changes by aᵢ |l|/lᵢ. `share` is aᵢ,
-/// `size` that of an index before; infinite where none of these is known. Where every other degree may be missing, the
+/// `size` that of an index before; infinite if none of these is known. Where every other degree may be missing, the
 /// index before is the larger one of two (`back`), else the next one.
 pub fn expected(levels: &[u8], back: u8, share: impl Fn(usize) -> f64, size: impl Fn(&[u8]) -> Option<f64>) -> f64 {
     let degree: f64 = levels.iter().map(|&level| f64::from(level)).sum();

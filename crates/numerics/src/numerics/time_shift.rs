@@ -51,7 +51,7 @@ impl TimeShift {
     }
 }
 
-/// The slope of a sample's errors over its velocities, where these vary.
+/// The slope of a sample's errors over its velocities, if these vary.
 fn slope(errors: &[f64], sample: &[Turning]) -> Option<f64> {
     let count = sample.len() as f64;
     let velocity = sample.iter().map(|at| at.velocity).sum::<f64>() / count;

@@ -37,7 +37,7 @@ struct Line<'e> {
 }
 
 impl<'e> Combined<'e> {
-    /// `None` where the ensemble has no combinations from which anything is gained, or whose ranges can be found.
+    /// `None` if the ensemble has no combinations from which anything is gained, or whose ranges can be found.
     pub fn new(ensemble: &'e dyn Ensemble) -> Option<Self> {
         let domain = ensemble.domain();
         let through = |combination| Line::through(domain, combination).filter(|line| line.is_shorter(domain));
@@ -110,7 +110,7 @@ impl<'e> Line<'e> {
         Self { combination: None, parameters: vec![parameter], ends }
     }
 
-    /// `None` where a range of the combination cannot be found.
+    /// `None` if a range of the combination cannot be found.
     fn through(domain: &ParameterBox, combination: Combination<'e>) -> Option<Self> {
         let parameters = combination.parameters.clone();
         let at = |xi: &[f64]| -> Vec<f64> {
@@ -159,7 +159,7 @@ impl<'e> Line<'e> {
     }
 }
 
-/// ξ at which a function of k of them is least and greatest; `None` where that is not found.
+/// ξ at which a function of k of them is least and greatest; `None` if that is not found.
 fn ends_of(k: usize, function: &dyn Fn(&[f64]) -> f64) -> Option<[Vec<f64>; 2]> {
     let evaluate = |_: &[usize], points: &[Vec<f64>]| -> Vec<f64> { points.iter().map(|xi| function(xi)).collect() };
     let search = RangeSearch::new(k);
@@ -301,7 +301,7 @@ impl Closure for AlongLines<'_> {
     }
 }
 
-/// ξ of the box where the numbers through which parameters act are least, and where they are greatest; none where every
+/// ξ of the box where the numbers through which parameters act are least, and where they are greatest; none if every
 /// parameter acts on its own.
 pub fn ends_of_combinations(ensemble: &dyn Ensemble) -> Vec<Vec<f64>> {
     Combined::new(ensemble).iter().flat_map(Combined::ends).collect()

@@ -11,7 +11,7 @@ use crate::methods::validation::{HeldOut, ValidationTable};
 pub(super) struct RangeEstimator<'a> {
     pub search: &'a RangeSearch,
     pub validation: HeldOut<'a>,
-    /// Samples of the whole box with the schedule's steps and with halved ones, where the time steps' errors are asked
+    /// Samples of the whole box with the schedule's steps and with halved ones, if the time steps' errors are asked
     /// for.
     pub halved: Option<(&'a ValidationTable, &'a ValidationTable)>,
     pub sensitivity: Option<SensitivityAnalysis<'a>>,

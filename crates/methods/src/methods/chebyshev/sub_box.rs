@@ -26,7 +26,7 @@ pub(super) struct SubBox<'r> {
     pub grid: SparseGrid,
     /// Values at the grid's nodes, in groups: the number of nodes, then values row by row, line by line, node by node.
     /// Lines are those of the motion, the outputs, and for each coordinate that turns the time at which its course is
-    /// there (NaN where that is unknown).
+    /// there (NaN if that is unknown).
     pub nodes: Vec<(usize, Vec<f64>)>,
     /// Number of these lines.
     pub lines: usize,

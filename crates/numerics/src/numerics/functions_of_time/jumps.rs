@@ -3,7 +3,7 @@
 use super::tuning::TUNING;
 use super::{Cell, sign};
 
-/// Levels with the signs of numbers; where one is zero, as before.
+/// Levels with the signs of numbers; zero keeps the level before it.
 pub fn with_signs(numbers: impl Iterator<Item = f64>) -> Vec<Cell> {
     let mut level = 0.0;
     let of_number = |number: f64| {

@@ -61,7 +61,7 @@ impl Side {
         Self { points: VecDeque::new(), shift: 0.0, limit }
     }
 
-    /// The end of where the function is largest, outwards.
+    /// The outer end of the interval on which the function is largest.
     fn nearest(&self) -> f64 {
         self.points.front().map_or(self.limit, |(point, _)| (point + self.shift).min(self.limit))
     }

@@ -157,7 +157,7 @@ pub fn pave(tubes: &Tubes, limits: PavingLimits, interrupted: &(dyn Fn() -> bool
 }
 
 impl Paving {
-    /// A box to where it belongs; `None` does not belong to the set.
+    /// Adds a box to those inside or to those to be divided; `None` does not belong to the set.
     fn sort(&mut self, part: Option<PavingBox>, layer: &mut Vec<PavingBox>) {
         match part {
             Some(part) if part.rows.is_empty() => self.inside.add(&part.ends),

@@ -7,7 +7,7 @@ pub struct NotPositive;
 /// Correlates independent normal scores; empty if the parameters are independent.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Copula {
-    /// Number of parameters, and the rows of the Cholesky factor; empty where all are independent.
+    /// Number of parameters, and the rows of the Cholesky factor; empty if all are independent.
     rows: Vec<Vec<f64>>,
 }
 

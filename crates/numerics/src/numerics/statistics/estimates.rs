@@ -46,7 +46,7 @@ pub struct Replicates {
     quantiles: Vec<Vec<f64>>,
     /// The shares below them.
     shares: Vec<f64>,
-    /// Values of all replicates, where they are few.
+    /// Values of all replicates, if they are few.
     pooled: Vec<f64>,
 }
 
@@ -107,7 +107,7 @@ impl Replicates {
 }
 
 /// The value below which a share of them lies, linearly between two of them (R. J. Hyndman & Y. Fan, The American
-/// Statistician 50 (1996) 361, type 5), where they are sorted; NaN where one is.
+/// Statistician 50 (1996) 361, type 5), where they are sorted; NaN if one is.
 fn quantile_of(sorted: &[f64], share: f64) -> f64 {
     let n = sorted.len();
     if [sorted.first(), sorted.last()].iter().any(|end| end.is_none_or(|value| value.is_nan())) {

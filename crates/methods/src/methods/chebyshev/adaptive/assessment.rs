@@ -140,7 +140,7 @@ impl Adaptation<'_> {
         Ok((found.concat(), kept.into_iter().flatten().collect()))
     }
 
-    /// Estimates over a sub-box in all rows, where they are not known.
+    /// Estimates over a sub-box in all rows, if they are not known.
     pub(super) fn conclude_box(&mut self, sub_box: &mut SubBox, detail: Detail) -> Result<(), EnsembleError> {
         if sub_box.estimates.is_none() {
             let rows: Vec<usize> = (0..sub_box.rows()).collect();

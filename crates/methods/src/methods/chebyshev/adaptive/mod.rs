@@ -51,7 +51,7 @@ impl Goal {
         self.outputs.iter().map(|output| output.rows).max().unwrap_or(0)
     }
 
-    /// Largest error of the outputs for which a row counts, over the one that is allowed; NaN where one is.
+    /// Largest error of the outputs for which a row counts, over the one that is allowed; NaN if one is.
     pub fn share(&self, row: usize, errors: impl IntoIterator<Item = f64>) -> f64 {
         let counting = self.outputs.iter().zip(errors).filter(|(output, _)| row < output.rows);
         largest(counting.map(|(output, error)| error / output.allowed))
@@ -98,7 +98,7 @@ pub(super) struct Adaptation<'r> {
 /// None over lines can be stored.
 ///
 /// # Errors
-/// Where a sample cannot be assembled or a closure not be compiled, and at an interruption.
+/// If a sample cannot be assembled or a closure not be compiled, and at an interruption.
 pub(super) fn search(
     ensemble: &dyn Ensemble,
     goal: Goal,
@@ -140,7 +140,7 @@ impl<'r> Adaptation<'r> {
     /// Refines until the goal is met or the budget is spent.
     ///
     /// # Errors
-    /// Where a sample cannot be assembled or a closure not be compiled, and at an interruption.
+    /// If a sample cannot be assembled or a closure not be compiled, and at an interruption.
     pub fn search(mut self) -> Result<Adapted, EnsembleError> {
         let Validation { points, direct, spread, .. } = self.validation;
         let whole = self.ensemble.domain().clone();

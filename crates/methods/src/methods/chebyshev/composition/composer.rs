@@ -38,7 +38,7 @@ impl<'a> Composer<'a> {
     /// the row before in the same block). Velocities are expanded where they are asked for, or outputs need them.
     ///
     /// # Errors
-    /// Where a closure cannot be compiled, and at an interruption.
+    /// If a closure cannot be compiled, and at an interruption.
     pub fn rows<T: Send>(
         &mut self,
         surrogate: &Surrogate,

@@ -1,4 +1,4 @@
-//! Coordinates that turn are expanded as the times at which one sample, that of their course, is where they are.
+//! Coordinates that turn are expanded as the times at which one sample, that of their course, has their values.
 
 use std::borrow::Cow;
 
@@ -28,7 +28,7 @@ pub fn turning(direct: &ValidationTable, points: &[Vec<f64>], ensemble: &dyn Ens
 /// courses there.
 ///
 /// # Errors
-/// Where a corner cannot be assembled.
+/// If a corner cannot be assembled.
 pub fn courses(
     ensemble: &dyn Ensemble,
     domain: &ParameterBox,

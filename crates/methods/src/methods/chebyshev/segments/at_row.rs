@@ -146,7 +146,7 @@ fn common_segment(piece: &Piece, lattice: &Lattice, time: f64) -> Option<usize> 
 }
 
 /// Coefficients of the lines of a jet at a time, line by line: the polynomial through a step's nodes, at the share that
-/// the time is at. `None` where its centre is too far beyond the segment.
+/// the time is at. `None` if its centre is too far beyond the segment.
 fn jet_at(space: &JetSpace, jet: &SegmentMotions, segment: usize, time: f64) -> Option<Vec<f64>> {
     let terms = space.len();
     let product = |a: &[f64], b: &[f64]| {

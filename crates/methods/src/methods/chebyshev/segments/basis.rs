@@ -128,7 +128,7 @@ impl Level {
         (1..=highest).filter_map(of_degree).min_by(|a, b| a.error.total_cmp(&b.error))
     }
 
-    /// Whose zero is where an axis is at its middle.
+    /// The level whose zero is at the middle of an axis.
     fn along(axis: usize, k: usize) -> Self {
         let exponents = (0..k).map(|other| u8::from(other == axis)).collect();
         Self { powers: Powers(vec![exponents]), coefficients: vec![1.0], error: 0.0 }

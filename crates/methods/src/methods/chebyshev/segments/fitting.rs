@@ -26,10 +26,10 @@ pub(super) struct Fitting<'v> {
 type Found = (Vec<Piece>, usize, f64);
 
 impl Fitting<'_> {
-    /// The polynomials; `None` where samples that are added cannot be cut.
+    /// The polynomials; `None` if samples that are added cannot be cut.
     ///
     /// # Errors
-    /// Where a sample cannot be assembled.
+    /// If a sample cannot be assembled.
     pub fn pieces(mut self, ensemble: &dyn Ensemble) -> Result<Option<Found>, EnsembleError> {
         let shows = |word: &SegmentMotions| !word.samples.is_empty();
         if !self.samples.motions.words.iter().all(shows) {

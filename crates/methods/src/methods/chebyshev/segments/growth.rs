@@ -26,7 +26,7 @@ impl Growth {
     /// Starts from a low degree; `None` if motions are not cut, or if it has too many terms.
     ///
     /// # Errors
-    /// Where a sample cannot be assembled.
+    /// If a sample cannot be assembled.
     pub fn start(ensemble: &dyn Ensemble) -> Result<Option<Self>, EnsembleError> {
         let k = ensemble.domain().dimension();
         let mut grid = SparseGrid::new(&vec![TUNING.highest_degree; k]);
@@ -47,7 +47,7 @@ impl Growth {
     /// Grows to `wanted` terms, as far as there are any: `false` where nothing is added.
     ///
     /// # Errors
-    /// Where a sample cannot be assembled.
+    /// If a sample cannot be assembled.
     pub fn grow(&mut self, ensemble: &dyn Ensemble, wanted: usize) -> Result<bool, EnsembleError> {
         let (before, Some(mut sizes)) = (self.grid.len(), self.sizes()) else { return Ok(false) };
         let rates = self.rates(&sizes);
@@ -72,7 +72,7 @@ impl Growth {
         largest(times.chain(lines))
     }
 
-    /// Size of the coefficients of each term; `None` where samples meet other events.
+    /// Size of the coefficients of each term; `None` if samples meet other events.
     fn sizes(&self) -> Option<FxHashMap<Vec<u8>, f64>> {
         let motions = self.motions.words.first().filter(|word| word.samples.len() == self.grid.len())?;
         let (scales, surrogate) = (Scales::of(motions), Surrogate::sparse(&self.grid));

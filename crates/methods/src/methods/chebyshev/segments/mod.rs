@@ -67,7 +67,7 @@ use tuning::TUNING;
 /// Bounds by segments between events, if the ensemble's motions are cut there.
 ///
 /// # Errors
-/// Where a sample cannot be assembled, or a closure not be compiled.
+/// If a sample cannot be assembled, or a closure not be compiled.
 pub(super) fn of_degree(
     ensemble: &dyn Ensemble,
     surrogate: &Surrogate,
@@ -88,7 +88,7 @@ pub(super) fn of_degree(
 /// Bounds to the degree that the goal asks for, by segments between events, if the ensemble's motions are cut there.
 ///
 /// # Errors
-/// Where a sample cannot be assembled, or a closure not be compiled.
+/// If a sample cannot be assembled, or a closure not be compiled.
 pub(super) fn adapted(
     ensemble: &dyn Ensemble,
     goal: &Goal,
@@ -157,7 +157,7 @@ fn grown(
     Ok(best)
 }
 
-/// Largest error of a surrogate over the one that is allowed; NaN where one is unknown.
+/// Largest error of a surrogate over the one that is allowed; NaN if one is unknown.
 fn excess(result: &MethodResult, goal: &Goal) -> f64 {
     let of_output = |(errors, goal): (&Vec<f64>, &OutputGoal)| {
         largest(errors.iter().take(goal.rows).map(|error| SAFETY_OF_SURROGATE * error)) / goal.allowed
@@ -170,7 +170,7 @@ fn excess(result: &MethodResult, goal: &Goal) -> f64 {
 /// parameters at least those of the first degree.
 ///
 /// # Errors
-/// Where a sample cannot be assembled, or a closure not be compiled, and at an interruption.
+/// If a sample cannot be assembled, or a closure not be compiled, and at an interruption.
 pub(in crate::methods) fn beside_scan(
     ensemble: &dyn Ensemble,
     samples: usize,
@@ -192,7 +192,7 @@ pub(in crate::methods) fn beside_scan(
 /// Bounds by jets in segments between events, if the ensemble's motions are cut there.
 ///
 /// # Errors
-/// Where a sample cannot be assembled, or a closure not be compiled, and at an interruption.
+/// If a sample cannot be assembled, or a closure not be compiled, and at an interruption.
 pub(in crate::methods) fn of_jets(
     ensemble: &dyn Ensemble,
     space: &JetSpace,
@@ -239,7 +239,7 @@ impl Composed {
 /// Bounds from the polynomials in all parts of the box; sensitivities where there is a grid.
 ///
 /// # Errors
-/// Where a closure cannot be compiled, and at an interruption.
+/// If a closure cannot be compiled, and at an interruption.
 fn composed(
     ensemble: &dyn Ensemble,
     pieces: &Pieces,

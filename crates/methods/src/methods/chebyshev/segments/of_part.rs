@@ -60,11 +60,11 @@ pub struct RangeInPart {
 }
 
 /// The range of a number over the parts of the box that have one. The ensemble's
-/// segments are those of [`number_as_motion`], and it has no other output. `None` where a sample has none of the words
+/// segments are those of [`number_as_motion`], and it has no other output. `None` if a sample has none of the words
 /// that `known_to` speaks of.
 ///
 /// # Errors
-/// Where a sample cannot be assembled.
+/// If a sample cannot be assembled.
 pub fn range_in_part(
     ensemble: &dyn Ensemble,
     degree: usize,

@@ -31,7 +31,7 @@ impl Pieces {
     /// Pieces from the motions of the grid's samples; `None` if validation samples cannot be cut.
     ///
     /// # Errors
-    /// Where a sample cannot be assembled.
+    /// If a sample cannot be assembled.
     pub fn new(
         ensemble: &dyn Ensemble,
         grid: &Surrogate,
@@ -72,7 +72,7 @@ impl Pieces {
     /// and if the centre has no jet, too. `None` if motions are not cut.
     ///
     /// # Errors
-    /// Where a sample cannot be assembled.
+    /// If a sample cannot be assembled.
     pub fn of_jets(
         ensemble: &dyn Ensemble,
         space: &JetSpace,
@@ -108,7 +108,7 @@ impl Pieces {
     /// its middle. `None` if a piece is of several words, or is no jet's.
     ///
     /// # Errors
-    /// Where a sample cannot be assembled.
+    /// If a sample cannot be assembled.
     pub fn halved(&self, ensemble: &dyn Ensemble, space: &JetSpace) -> Result<Option<Self>, EnsembleError> {
         let domain = ensemble.domain();
         let k = domain.dimension();
