@@ -11,7 +11,7 @@ pub(super) struct Answers {
 }
 
 impl Answers {
-    /// Of `count` points, none of which has one.
+    /// Answers of `count` points, none of which is known yet.
     pub fn of(count: usize) -> Self {
         Self { found: (0..count).map(|_| None).collect(), open: count }
     }

@@ -2,7 +2,7 @@
 //!
 //! In: a heading with the names of the parameters, then their values; the end of the points is the end of the input.
 //! Out: a heading with `sample`, `t` and the outputs, in any order and with any further columns; `sample` counts the
-//! points of the call from 0. Tables of one time need no `t`. Both are what `mbint sample` reads and writes.
+//! points of the call from 0. Tables of one time need no `t`. `mbint sample` reads and writes both.
 
 use super::answers::Answers;
 use super::trouble::Trouble;
@@ -35,7 +35,7 @@ struct Columns {
 }
 
 impl Table {
-    /// Of `points` points.
+    /// An empty table for `points` points.
     pub fn of(points: usize) -> Self {
         Self { columns: None, rows: vec![Vec::new(); points] }
     }
@@ -43,7 +43,7 @@ impl Table {
     /// Takes a line.
     ///
     /// # Errors
-    /// Where the heading lacks a column, or a line is of no point that waits.
+    /// If the heading lacks a column, or a line belongs to no point that is waiting.
     pub fn take(&mut self, questions: &Questions, line: &str, answers: &mut Answers) -> Result<(), Trouble> {
         if line.trim().is_empty() || line.starts_with('#') {
             return Ok(());

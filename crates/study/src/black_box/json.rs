@@ -1,8 +1,8 @@
 //! JSON lines: a point on a line in, its rows on a line out.
 //!
 //! In: `{"point": 7, "left": 2, "parameters": {"l": 0.15}, "times": [0, 0.01]}`, where `left` points of the same call
-//! follow. Out, in any order: `{"point": 7, "outputs": {"x": [0, 0.1]}}` or `{"point": 7, "error": "…"}`. Lines that
-//! do not begin with `{` are no answers, but what libraries print.
+//! follow. Out, in any order: `{"point": 7, "outputs": {"x": [0, 0.1]}}` or `{"point": 7, "error": "…"}`. Lines that do
+//! not begin with `{` are output of libraries, not answers.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;

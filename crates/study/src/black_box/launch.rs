@@ -20,7 +20,7 @@ pub(super) struct Launch {
 }
 
 impl Launch {
-    /// Of a program. Nothing is unpacked before the first process.
+    /// A launch of `program`. Nothing is unpacked before the first process.
     pub fn new(program: Program) -> Self {
         Self { program, unpacked: OnceLock::new() }
     }
@@ -28,7 +28,7 @@ impl Launch {
     /// A process that may be started: without a shell, in the user's environment.
     ///
     /// # Errors
-    /// Where a unit cannot be unpacked.
+    /// If a unit cannot be unpacked.
     pub fn command(&self) -> Result<Command, String> {
         match &self.program {
             Program::Command { words, directory } => {

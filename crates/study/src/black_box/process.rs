@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 use super::trouble::Words;
 use super::tuning::TUNING;
 
-/// What a process wrote.
+/// Output of a process.
 pub(super) enum Said {
     /// A line, without its end.
     Line(String),
@@ -73,7 +73,7 @@ impl Process {
         }
     }
 
-    /// Its next line, or why there is none.
+    /// Returns its next line, or the reason why none has come.
     pub fn next(&self, until: Option<Instant>, interrupted: &dyn Fn() -> bool) -> Said {
         loop {
             let rest =
@@ -150,7 +150,7 @@ fn read(stdout: impl Read, allowed: &AtomicU64, lines: &Sender<Option<String>>) 
         stdout.consume(taken);
         let (left, length) = (allowed.load(Ordering::Relaxed), line.len() as u64);
         if length > left {
-            // Whoever waits is told; where nobody does, nothing is lost.
+            // The receiver learns of the excess; without a receiver, nothing is lost.
             let _ = lines.send(None);
             return;
         }
@@ -172,7 +172,7 @@ fn text(line: &[u8]) -> String {
     String::from_utf8_lossy(line).trim_end_matches(['\n', '\r']).to_owned()
 }
 
-/// Keeps the end of what comes.
+/// Stores the end of the standard error.
 fn listen(mut stderr: impl Read, words: &Mutex<VecDeque<u8>>) {
     let mut buffer = [0; 1024];
     while let Ok(read @ 1..) = stderr.read(&mut buffer) {

@@ -49,7 +49,7 @@ pub enum Trouble {
     NoOutput {
         /// Its name.
         name: String,
-        /// What there is, for people.
+        /// Names of the outputs in the answer, or `none`.
         found: String,
     },
     /// There are too few rows, or too many.
@@ -82,13 +82,13 @@ pub enum Trouble {
     },
 }
 
-/// The end of what a process wrote to its standard error, of which the last line is shown; nothing where it is empty.
+/// The end of a process's standard error, of which the last line is shown; nothing if it is empty.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Words(pub String);
 
 impl fmt::Display for Words {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        // The end of a traceback says what happened; lines of marks under a word do not.
+        // The end of a traceback states the error; lines of marks under a word do not.
         let has_words = |line: &&str| line.contains(|c: char| c.is_alphanumeric());
         let Some(last) = self.0.lines().map(str::trim).rfind(has_words) else { return Ok(()) };
         write!(f, "; its last words: {}", clipped_front(last))

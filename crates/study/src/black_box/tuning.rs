@@ -7,11 +7,11 @@ use symdiff::constants::tuning;
 tuning! {
     /// Programs that answer instead of a mechanism.
     "study: black_box" {
-        /// Bytes that a program may write in a call beside its answers.
+        /// Bytes that a program may write in a call in addition to its answers.
         chatter_bytes: u64 = 1 << 20, moves "which programs are ended because they write too much";
-        /// Bytes that a number may take, with what stands around it.
+        /// Bytes that a number may take, including the characters around it.
         number_bytes: u64 = 64, moves "which programs are ended because they write too much";
-        /// Bytes of standard error that are kept.
+        /// Bytes of standard error that are stored.
         words_bytes: usize = 4096, moves "messages of programs that fail";
         /// Times that differ by less than this share of the time between rows are the same.
         same_time: f64 = 1e-6, moves "which answers of programs are accepted";

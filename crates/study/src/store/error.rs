@@ -25,7 +25,7 @@ pub enum StoreError {
         /// The file that is missing.
         file: &'static str,
     },
-    /// A file is not what its name says.
+    /// A file does not have the content that its name states.
     #[error("{} is damaged, or of another version of mbint; remove it and plan again", path.display())]
     Damaged {
         /// Which.
@@ -47,12 +47,12 @@ pub fn without(folder: &Path, file: &str) -> String {
 }
 
 impl StoreError {
-    /// Of a file or folder.
+    /// An error of a file or folder.
     pub(super) fn io(path: &Path, error: std::io::Error) -> Self {
         Self::Io { path: path.to_owned(), error }
     }
 
-    /// Of a file that is not what its name says.
+    /// An error of a file whose content does not match its name.
     pub fn damaged(path: &Path) -> Self {
         Self::Damaged { path: path.to_owned() }
     }

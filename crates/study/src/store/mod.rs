@@ -1,10 +1,9 @@
-//! Simulations kept as files, so that a run can be cut into shards, interrupted, and resumed.
+//! Simulations stored as files, so that a run can be cut into shards, interrupted, and resumed.
 //!
-//! What a method asks of an ensemble is a [`Task`]; what comes of it is a part, a file in the store whose name is a
-//! hash of all that decides it. A run with a store simulates missing parts and reads the rest. While a study is
-//! planned or merged, long tasks are deferred instead: tasks are written for `mbint shard`, and the study ends there.
-//! A part is cut where the number of rows and values says, never where a shard ends, so no bit of the results depends
-//! on shards.
+//! A method's request to an ensemble is a [`Task`]; its result is a part, a file in the store whose name is a hash of
+//! all that determines it. A run with a store simulates missing parts and reads the rest. While a study is planned or
+//! merged, long tasks are deferred instead: tasks are written for `mbint shard`, and the study ends there. A part is
+//! cut where the number of rows and values says, never where a shard ends, so no bit of the results depends on shards.
 
 mod error;
 mod part;
@@ -30,7 +29,7 @@ pub const FORMAT: u32 = 1;
 /// Action where a part is missing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Missing {
-    /// It is simulated, and kept.
+    /// It is simulated and stored.
     Simulate,
     /// Tasks expected to take longer than this, s, are deferred to shards.
     Defer(f64),
@@ -53,7 +52,7 @@ pub struct Deferred {
 #[derive(Debug)]
 pub struct PartStore {
     folder: PathBuf,
-    /// Hash of what all parts of the run depend on.
+    /// Hash of the inputs that all parts of the run depend on.
     context: [u8; 32],
     missing: Missing,
     deferred: Mutex<Vec<Deferred>>,
@@ -62,7 +61,7 @@ pub struct PartStore {
     begun: Mutex<HashSet<String>>,
 }
 
-/// What parts there are in a folder, of whatever runs.
+/// Number and size of the parts in a folder, of any run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Content {
     /// How many.
@@ -77,11 +76,11 @@ fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 }
 
 impl PartStore {
-    /// Parts of a run in a folder, which is made where it does not exist. `context` is all that decides the results
-    /// beside the tasks: the model's files, overrides and scene, in any unambiguous form.
+    /// Parts of a run in a folder, which is created if it does not exist. `context` is all that determines the results
+    /// in addition to the tasks: the model's files, overrides and scene, in any unambiguous form.
     ///
     /// # Errors
-    /// Where the folder cannot be made.
+    /// If the folder cannot be made.
     pub fn open(folder: &Path, context: &[u8], missing: Missing) -> Result<Self, StoreError> {
         for folder in [folder.join(PARTS), folder.join(TASKS)] {
             std::fs::create_dir_all(&folder).map_err(|error| StoreError::io(&folder, error))?;
@@ -103,11 +102,11 @@ impl PartStore {
         })
     }
 
-    /// What the folder has. Half-written files of programs that were killed are removed. Shards do without this: they
+    /// Content of the folder. Removes half-written files of programs that were killed. Shards do without this: they
     /// list nothing.
     ///
     /// # Errors
-    /// Where the folder cannot be read.
+    /// If the folder cannot be read.
     pub fn tidy(&self) -> Result<Content, StoreError> {
         whole::remove_left_over(&self.folder.join(TASKS))?;
         whole::remove_left_over(&self.folder.join(PARTS))

@@ -1,4 +1,5 @@
-//! The file of a part: values row by row as they come, then what became of the samples, then a hash of all before.
+//! The file of a part: values row by row as they are computed, then the outcome of the samples, then a hash of all
+//! before.
 //!
 //! Values are f64 in little-endian order, each row with its lines, each line with its samples. A file appears under
 //! its name when it is whole.
@@ -22,7 +23,7 @@ const MAGIC: &[u8; 8] = b"mbint\x00pt";
 const HEADER: u64 = 12;
 const HASH: u64 = 32;
 
-/// The end of a part: what became of the samples, and the bounds of a scan.
+/// The end of a part: the outcome of the samples, and the bounds of a scan.
 type Outcome = (Simulated, Option<ScanBounds>);
 
 /// Writes a part.
@@ -90,7 +91,7 @@ pub struct PartReader {
     path: PathBuf,
     /// Where the next value stands.
     next: u64,
-    /// What became of the samples.
+    /// The outcome of the samples.
     pub simulated: Simulated,
     /// The bounds, of a part of a scan.
     pub scan: Option<ScanBounds>,
@@ -100,7 +101,7 @@ pub struct PartReader {
 }
 
 impl PartReader {
-    /// `None` where there is no file, or it is damaged.
+    /// `None` if there is no file, or it is damaged.
     pub(super) fn open(path: &Path) -> Result<Option<Self>, StoreError> {
         let failed = |error| StoreError::io(path, error);
         let file = match File::open(path) {

@@ -19,7 +19,7 @@ pub struct Plan {
     pub format: u32,
     /// Version of mbint; another one makes other parts.
     pub mbint: String,
-    /// Rounds planned so far; what a study asks for next may depend on the results of the round before.
+    /// Rounds planned so far; the next request of a study may depend on the results of the round before.
     pub round: usize,
     /// Request of the study.
     pub asked: StudyRequest,
@@ -36,7 +36,7 @@ pub struct StudyRequest {
     pub named: Vec<PathBuf>,
     /// Parameters that are set.
     pub set: Vec<String>,
-    /// Absolute path of the folder whose files the models may name beside those of their own folders.
+    /// Absolute path of the folder whose files the models may name in addition to those of their own folders.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub root: Option<PathBuf>,
     /// Scenes; all where empty.
@@ -50,18 +50,18 @@ pub struct StudyRequest {
     pub certify_scheme: bool,
     /// Whether every sample is simulated with halved steps too.
     pub certify_time: bool,
-    /// Whether infeasible parameter values are left out.
+    /// Whether infeasible parameter values are omitted.
     pub skip_infeasible: bool,
-    /// What takes less is simulated when planning and merging, s.
+    /// Tasks that take less are simulated when planning and merging, s.
     pub at_once: f64,
     /// Parts are joined to shards of at most this, s.
     pub shard_seconds: f64,
-    /// Where samples are asked for in place of bounds.
+    /// Points of samples, if samples are requested in place of bounds.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub points: Option<AskedPoints>,
 }
 
-/// At which points samples are asked for.
+/// Points of the requested samples.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum AskedPoints {
@@ -71,17 +71,17 @@ pub enum AskedPoints {
     Design {
         /// `sobol:1000`.
         design: String,
-        /// Of a Latin hypercube.
+        /// Seed of a Latin hypercube.
         seed: u64,
     },
 }
 
-/// What one call of `mbint shard` simulates.
+/// The simulations of one call of `mbint shard`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Shard {
     /// Number of the model among those asked for.
     pub model: usize,
-    /// Name of its scene, where it has some.
+    /// Name of its scene, if the model has scenes.
     pub scene: Option<String>,
     /// Names of the parts.
     pub parts: Vec<String>,
@@ -141,7 +141,7 @@ impl StudyFolder {
     /// Reads the plan.
     ///
     /// # Errors
-    /// Where there is none, or it is of another version.
+    /// If there is no plan, or it is of another version.
     pub fn plan(&self) -> Result<Plan, StoreError> {
         let path = self.plan_file();
         let bytes = std::fs::read(&path).map_err(|error| match error.kind() {
@@ -169,10 +169,10 @@ impl StudyFolder {
         whole::write(&self.plan_file(), &text, Durable::Now)
     }
 
-    /// Numbers of shards of which a part is missing. Only names are looked at.
+    /// Numbers of shards of which a part is missing. Only names are examined.
     ///
     /// # Errors
-    /// Where the folder cannot be read.
+    /// If the folder cannot be read.
     pub fn missing(&self, plan: &Plan) -> Result<Vec<usize>, StoreError> {
         let folder = self.0.join(PARTS);
         let entries = std::fs::read_dir(&folder).map_err(|error| StoreError::io(&folder, error))?;

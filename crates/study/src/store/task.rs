@@ -1,4 +1,4 @@
-//! What a shard simulates.
+//! The simulations of a shard.
 
 use std::path::Path;
 
@@ -18,15 +18,15 @@ pub struct Task {
     pub subsystem: usize,
     /// Steps of all samples.
     pub schedule: Schedule,
-    /// What the steps' local errors are kept within, where they are controlled.
+    /// Tolerance of the steps' local errors, if they are controlled.
     pub tolerance: Option<Controller>,
     /// Values stored in each row.
     pub observed: Observed,
     /// When to end.
     pub until: Until,
-    /// By what outputs are reduced to one number.
+    /// Reductions of outputs to one number.
     pub channels: Vec<Channel>,
-    /// Where these are samples of a scan: its bounds are kept instead of values.
+    /// Set for samples of a scan: its bounds are stored instead of values.
     pub scan: Option<ScanPart>,
     /// Parameters of each sample.
     pub samples: Vec<Sample>,

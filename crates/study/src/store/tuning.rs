@@ -5,10 +5,10 @@ use std::time::Duration;
 use symdiff::constants::tuning;
 
 tuning! {
-    /// Simulations kept as files.
+    /// Simulations stored as files.
     "store" {
-        /// What took longer to simulate is on the disk before it appears. Of the rest a loss of power costs the last
-        /// half minute's at most, which a system writes by itself.
+        /// A part that took longer to simulate is on the disk before it appears. Of the others a loss of power costs at
+        /// most those of the last half minute, which a system writes by itself.
         worth_syncing: Duration = Duration::from_secs(1), moves "which parts outlive a loss of power";
     }
 }

@@ -28,7 +28,7 @@ pub(super) enum Durable {
 pub(super) fn begin(folder: &Path) -> io::Result<NamedTempFile> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(TEMPORARY);
-    // Others may read what one of them computed.
+    // Other users of a shared folder can read the file.
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o644));
     loop {
@@ -61,10 +61,10 @@ pub(super) fn write(path: &Path, bytes: &[u8], durable: Durable) -> Result<(), S
     written.map_err(|error| StoreError::io(path, error))
 }
 
-/// Removes what programs left that were killed while they wrote. What else there is.
+/// Removes files left by programs that were killed while they wrote. Returns the rest of the content.
 ///
 /// # Errors
-/// Where the folder cannot be read.
+/// If the folder cannot be read.
 pub(super) fn remove_left_over(folder: &Path) -> Result<Content, StoreError> {
     let failed = |error| StoreError::io(folder, error);
     let mut content = Content::default();

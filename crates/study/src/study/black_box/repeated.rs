@@ -1,4 +1,4 @@
-//! Points that are asked twice: what differs is noise of the program.
+//! Points that are evaluated twice: differences are noise of the program.
 
 use super::tuning::TUNING;
 use crate::methods::Validation;
@@ -7,10 +7,10 @@ use crate::results::{BlackBoxSummary, NoiseSummary};
 use crate::simulate::SimulationError;
 use crate::study::problem::Study;
 
-/// Asks the program a second time, and notes how much its answers differ; nothing where there is none.
+/// Evaluates points a second time, and notes the differences of the answers; does nothing if the model has no program.
 ///
 /// # Errors
-/// Where the program cannot be started.
+/// If the program cannot be started.
 pub(in crate::study) fn repeat(study: &Study, validation: Option<&Validation>) -> Result<(), SimulationError> {
     let Some(source) = &study.source else { return Ok(()) };
     let mut samples: Vec<Sample> = vec![study.domain.nominal.clone()];

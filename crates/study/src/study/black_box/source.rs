@@ -54,7 +54,7 @@ impl UnitSteps {
     }
 }
 
-/// Answers that are kept, by the bits of their points.
+/// Stored answers, by the bits of their points.
 #[derive(Debug, Default)]
 struct Known {
     answers: HashMap<Vec<u64>, Vec<f64>>,
@@ -62,7 +62,7 @@ struct Known {
 }
 
 impl ProgramSource {
-    /// Of a model; `None` where a mechanism moves.
+    /// The program of a model; `None` if the model is a mechanism.
     pub fn of(description: &Description) -> Option<Self> {
         let own = description.black_box.clone()?;
         let simulation = &description.simulation;
@@ -101,13 +101,13 @@ impl ProgramSource {
         self.output_count
     }
 
-    /// Notes what repeated points have shown, the first time that they do.
+    /// Stores the findings of repeated points, once.
     pub fn note(&self, summary: BlackBoxSummary) {
         // Parts of a box share one program.
         let _ = self.summary.set(summary);
     }
 
-    /// Findings of repeated points, as far as there are any.
+    /// Findings of repeated points, if known.
     pub fn summary(&self) -> Option<BlackBoxSummary> {
         self.summary.get().cloned()
     }

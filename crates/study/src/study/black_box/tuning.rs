@@ -9,8 +9,7 @@ tuning! {
         asked_twice: usize = 4, moves "which programs count as noisy";
         /// Differences below this share of the largest value are rounding.
         rounding: f64 = 1e-12, moves "which programs count as noisy";
-        /// Values that are kept of points that were asked, at most: a validation sample is asked under several
-        /// schedules.
+        /// Most values that are stored for evaluated points: a validation sample is requested under several schedules.
         most_kept: usize = 1 << 22, moves "time only";
         /// Steps of model exchange between two rows, where the model does not say their length.
         steps_a_row: f64 = 10.0, moves "bounds of units of model exchange";
