@@ -25,7 +25,7 @@ pub struct ToleranceZone {
     pub below: f64,
 }
 
-/// What becomes of a parameter's tolerance.
+/// Tolerance of a parameter before and after an allocation.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct AllocatedTolerance {
     /// The parameter's name, as a model file has it.
@@ -38,23 +38,23 @@ pub struct AllocatedTolerance {
     pub before: ToleranceZone,
     /// As it was found.
     pub after: ToleranceZone,
-    /// The grade of the process, where it has grades.
+    /// Grade of the process, if it has grades.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub grade: Option<String>,
-    /// Costs before and after; absent where none is known.
+    /// Cost before; absent if unknown.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub cost_before: Option<f64>,
-    /// The same, after.
+    /// Cost after; absent if unknown.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub cost_after: Option<f64>,
-    /// Its share of what takes up the tightest requirement's margin before: of the linearised worst case, or of the
+    /// Its share of the consumed margin of the tightest requirement before: of the linearised worst case, or of the
     /// variance.
     pub share_before: f64,
     /// The same, after.
     pub share_after: f64,
     /// Whether it was free to change.
     pub is_free: bool,
-    /// Whether it is as loose as was looked for.
+    /// Whether it reached the loosest multiple that was searched.
     pub at_widest: bool,
 }
 
@@ -83,7 +83,7 @@ pub struct TradePoint {
     pub cost: f64,
 }
 
-/// What an allocation found.
+/// Result of an allocation.
 #[derive(Clone, Debug, Serialize)]
 pub struct Allocation {
     /// Name of the model.

@@ -1,4 +1,4 @@
-//! What analyses other than a motion yield besides bounds over time.
+//! Results of analyses other than a motion, in addition to bounds over time.
 
 use serde::Serialize;
 
@@ -14,7 +14,7 @@ pub struct AnalysisSummary {
     /// move.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stability: Option<f64>,
-    /// Of modes with states: the largest growth of any at the nominal parameters, 1/s; negative where all decay.
+    /// Largest growth of any mode with states at the nominal parameters, 1/s; negative if all decay.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub growth: Option<f64>,
     /// The same over the box: the largest upper bound of any method.
@@ -45,7 +45,7 @@ pub struct ValueSummary {
 }
 
 impl ValueSummary {
-    /// Of the only time of an output.
+    /// Summary of an output that has one time only.
     pub fn of(output: &OutputBounds) -> Self {
         let first = |values: &[f64]| values.first().copied().unwrap_or(f64::NAN);
         let bounds = output.bands.iter().map(|band| {

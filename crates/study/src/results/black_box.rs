@@ -1,4 +1,4 @@
-//! What a run says of a program that answered instead of a mechanism.
+//! Findings of a run about a program that answers in place of a mechanism.
 
 use serde::Serialize;
 

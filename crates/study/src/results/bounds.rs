@@ -1,4 +1,4 @@
-//! What a run yields: bounds of every output over time.
+//! Results of a run: bounds of every output over time.
 
 use std::sync::Arc;
 
@@ -16,7 +16,7 @@ pub struct Bounds {
     pub times: Vec<f64>,
     /// In the model's order.
     pub outputs: Vec<OutputBounds>,
-    /// Which tolerance matters, output by output; empty where it is not known.
+    /// Contributions of the parameters, output by output; empty if unknown.
     pub contributions: Vec<Vec<Contribution>>,
     /// Share of the box that the bounds are of, in each row; empty where they are of all of it.
     pub covered: Vec<f64>,
@@ -66,7 +66,7 @@ pub struct OutputDerivatives {
     pub by_parameters: Vec<f64>,
 }
 
-/// A parameter's part in the spread of an output over the times; NaN where it is not known.
+/// A parameter's part in the spread of an output over the times; NaN if unknown.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Contribution {
     /// Its name.
@@ -94,7 +94,7 @@ pub struct OutputBounds {
     pub bands: Vec<Band>,
 }
 
-/// What a harmonic load of size one does to an output at one frequency; vectors run over the times.
+/// Response of an output to a harmonic load of size one at one frequency; vectors run over the times.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ResponsePoint {
     /// Name of the response in the model.
@@ -103,13 +103,13 @@ pub struct ResponsePoint {
     pub frequency: f64,
     /// In the output's unit over that of the load.
     pub amplitude: OutputBounds,
-    /// rad; of the output behind the load, where it is negative.
+    /// Phase of the output relative to the load, rad; negative if the output lags.
     pub phase: OutputBounds,
-    /// Which tolerance matters for the amplitude, and for the phase; empty where it is not known.
+    /// Contributions of the parameters to the amplitude, and to the phase; empty if unknown.
     pub contributions: [Vec<Contribution>; 2],
 }
 
-/// Of one output's bands, the one to look at: the first that is resolved to the end, or else the first.
+/// The band of an output to show: the first that is resolved to the end, or else the first.
 pub fn foremost<T>(bands: &[T], is_resolved: impl Fn(&T) -> bool) -> Option<&T> {
     bands.iter().find(|band| is_resolved(band)).or(bands.first())
 }
@@ -119,9 +119,9 @@ pub fn foremost<T>(bands: &[T], is_resolved: impl Fn(&T) -> bool) -> Option<&T> 
 pub struct Band {
     /// The method that bounds.
     pub method: Method,
-    /// Lower bound at each time, in the output's SI unit; NaN where there is none.
+    /// Lower bound at each time, in the output's SI unit; NaN if unknown.
     pub lower: Vec<f64>,
-    /// Upper bound at each time, in the output's SI unit; NaN where there is none.
+    /// Upper bound at each time, in the output's SI unit; NaN if unknown.
     pub upper: Vec<f64>,
     /// How far the bounds may be from the truth, at each time.
     pub error: BandError,

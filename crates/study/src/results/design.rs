@@ -73,7 +73,7 @@ pub struct DesignPoint {
     pub at_limits: Vec<String>,
 }
 
-/// The objective along one parameter, through the best point: on a surrogate of the ranges, where there is one.
+/// The objective along one parameter, through the best point: on a surrogate of the ranges, if there is one.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct DesignProfile {
     /// Index of the parameter.
@@ -93,7 +93,7 @@ pub struct DesignTrade {
     pub margin: f64,
     /// How far that may be from the truth.
     pub error: f64,
-    /// What the tolerances cost.
+    /// Cost of the tolerances.
     pub cost: f64,
     /// Nominal values of the free parameters, SI.
     pub values: Vec<f64>,
@@ -106,7 +106,7 @@ pub struct DesignTrade {
     pub share: Option<f64>,
 }
 
-/// What a search for nominal values found.
+/// Result of a search for nominal values.
 #[derive(Clone, Debug, Serialize)]
 pub struct DesignStudy {
     /// Name of the model.

@@ -17,7 +17,7 @@ pub struct Drawing {
     pub elements: Vec<DrawnElement>,
     /// Shapes of bodies, and surfaces of effects.
     pub solids: Vec<DrawnSolid>,
-    /// The sum of all gravities, m/s²; `None` where there is none.
+    /// The sum of all gravities, m/s²; `None` without gravity.
     pub gravity: Option<[f64; 3]>,
     /// Lengths of bodies that are uncertain parameters.
     pub lengths: Vec<DrawnLength>,
@@ -36,10 +36,10 @@ pub struct DrawnBody {
     /// In space, its Euler parameters.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub orientation: Option<[f64; 4]>,
-    /// Its centre of mass, where it has a mass.
+    /// Its centre of mass, if it has a mass.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub center_of_mass: Option<[f64; 3]>,
-    /// The line that it moves along, where it has no other degree of freedom of its own.
+    /// Direction of its motion, if a translation is its only coordinate.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub guide: Option<[f64; 3]>,
     /// Its named points, and its frame's origin, without a name, where an element refers to it.
@@ -64,7 +64,7 @@ pub struct DrawnElement {
     pub kind: &'static str,
     /// Its symbol.
     pub glyph: Glyph,
-    /// The places that it acts at.
+    /// Points at which it acts.
     pub ends: Vec<[f64; 3]>,
     /// The bodies there, by index.
     pub bodies: Vec<usize>,
@@ -78,12 +78,12 @@ pub struct DrawnElement {
 pub struct DrawnSolid {
     /// Its body, by index; 0 is the ground.
     pub body: usize,
-    /// The effect whose surface it is; `None` where it is the body's own shape.
+    /// The effect whose surface it is; `None` for the body's own shape.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub surface: Option<String>,
     /// The origin of its frame in the body's frame.
     pub position: [f64; 3],
-    /// Of its frame against the body's: Euler parameters.
+    /// Orientation of its frame in the body's frame: Euler parameters.
     pub orientation: [f64; 4],
     /// Red, green and blue from 0 to 1.
     #[serde(skip_serializing_if = "Option::is_none")]

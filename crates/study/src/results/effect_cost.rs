@@ -1,4 +1,4 @@
-//! What an effect adds to the instructions of a step: data for `mbint explain` and the documentation.
+//! Instructions that an effect adds to a step: data for `mbint explain` and the documentation.
 
 use serde::Serialize;
 
@@ -38,7 +38,7 @@ impl std::ops::Add for StepInstructions {
     }
 }
 
-/// What one effect adds.
+/// Instructions that one effect adds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct EffectCost {
     /// Where it acts.

@@ -1,4 +1,4 @@
-//! What excitations of which only limits are known do to outputs, as constants and as functions of the time.
+//! Effect on outputs of excitations of which only limits are known, as constants and as functions of the time.
 
 use serde::Serialize;
 

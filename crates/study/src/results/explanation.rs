@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::Decision;
 use super::effect_cost::EffectCost;
 
-/// What a model was compiled to. Plain data: serialised as it stands, shown as text by the command line.
+/// Result of compiling a model. Plain data: serialised as it stands, shown as text by the command line.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Explanation {
     /// The model's name.
@@ -27,7 +27,7 @@ pub struct Explanation {
     pub redundant_constraints: Vec<String>,
     /// Names of constraints that depend on others at the start only: it is a singular configuration.
     pub singular_at_start: Vec<String>,
-    /// Coordinates that share what the model leaves open of the start.
+    /// Coordinates that share the freedom which the model leaves at the start.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub shared_start: Vec<String>,
     /// Outputs that hang on reactions which equilibrium does not determine.
@@ -44,14 +44,14 @@ pub struct Explanation {
     pub inactive: Option<InstructionCounts>,
     /// The matrix of Newton's method.
     pub newton: NewtonMatrix,
-    /// What the model says and the program does not hold.
+    /// Parts of the model that the program does not contain.
     pub left_out: Vec<LeftOut>,
     /// Omitted or less frequent computations.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub decisions: Vec<Decision>,
 }
 
-/// What an effect came to.
+/// An effect in the compiled program.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct EffectExplanation {
     /// Its name in the model.
@@ -69,11 +69,11 @@ pub struct EffectExplanation {
 /// Instructions by how often they are run, seldom to often.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct InstructionCounts {
-    /// Once a sample: what depends on parameters alone.
+    /// Once a sample: values that depend on parameters alone.
     pub sample: usize,
-    /// Once a step size: what depends on h and α.
+    /// Once a step size: values that depend on h and α.
     pub step_size: usize,
-    /// Once a step: prediction, and what depends on t.
+    /// Once a step: prediction, and values that depend on t.
     pub step: usize,
     /// Once a step, and again where Newton's iteration needs it: the matrix and its factors.
     pub factor: usize,
@@ -118,7 +118,7 @@ pub struct NewtonMatrix {
     pub pivots: Vec<(usize, usize)>,
 }
 
-/// Something that the model says and the program does not hold.
+/// A part of the model that the program does not contain.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LeftOut {
     /// E.g. `parameter k2`.

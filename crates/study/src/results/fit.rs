@@ -21,8 +21,8 @@ pub struct FitRow {
     pub noise: f64,
     /// Simulated at the estimate, SI; NaN where the motion stops before.
     pub fitted: f64,
-    /// Error of simulation, surrogate and interpolation in time in the last round, SI; infinite where the row tells
-    /// nothing.
+    /// Error of simulation, surrogate and interpolation in time in the last round, SI; infinite if the row carries no
+    /// information.
     pub error: f64,
 }
 
@@ -92,7 +92,7 @@ pub struct ConsistentSet {
     pub boxes: [usize; 2],
     /// Principal axes, the longest first: the combination that the data leave most open.
     pub axes: Vec<FitAxis>,
-    /// Of each pair of parameters.
+    /// Projections on each pair of parameters.
     pub projections: Vec<FitProjection>,
     /// Names of parameters whose interval ends before the set does.
     pub at_limits: Vec<String>,
@@ -130,8 +130,8 @@ pub struct Unexplained {
     /// Rows that no parameters of the model's box explain, each on its own, with the necessary excess over the noise,
     /// in the output's SI unit; the largest excess relative to its noise first.
     pub alone: Vec<(usize, f64)>,
-    /// The row without which the others agree best, and by what factor the noise of these would have to be larger: up
-    /// to 1 where they agree.
+    /// The row without which the others agree best, and the factor by which the noise of the others would have to be
+    /// larger: up to 1 if they agree.
     pub worst: Option<(usize, f64)>,
 }
 

@@ -32,8 +32,8 @@ pub struct OutputGradients {
     pub display: Option<DisplayUnit>,
     /// Its values over the times, SI.
     pub values: Vec<f64>,
-    /// For each time its derivatives by the parameters, SI; zero by those on which it does not depend, not finite where
-    /// there is none.
+    /// For each time its derivatives by the parameters, SI; zero for parameters on which it does not depend, not finite
+    /// if undefined.
     pub by_parameters: Vec<Vec<f64>>,
 }
 
@@ -44,7 +44,7 @@ impl OutputGradients {
         terms.map(|(by, parameter)| (by * parameter.half_width).abs()).sum()
     }
 
-    /// The time at which that is the most; the last where it is nowhere known.
+    /// The time of the largest [`reach`](Self::reach); the last if it is known at no time.
     pub fn most_sensitive(&self, parameters: &[GradientParameter]) -> usize {
         let reaches = (0..self.values.len()).map(|row| (row, self.reach(row, parameters)));
         let most = reaches.filter(|(_, reach)| reach.is_finite()).max_by(|a, b| a.1.total_cmp(&b.1));

@@ -8,7 +8,7 @@ use crate::numerics::{BandError, EMPTY, Range, largest, union};
 /// The formulation of subsystems that differ in it.
 const BOTH: &str = "absolute and joint";
 
-/// Adds what the same method took elsewhere.
+/// Adds the cost of the same method elsewhere.
 fn add_method(method: &mut MethodSummary, other: &MethodSummary) {
     method.simulations += other.simulations;
     method.steps = method.steps.max(other.steps);
@@ -21,7 +21,7 @@ fn add_method(method: &mut MethodSummary, other: &MethodSummary) {
     }
 }
 
-/// Adds what the methods took in another part of the run.
+/// Adds the costs of the methods in another part of the run.
 pub fn add_methods(summary: &mut Summary, others: &[MethodSummary]) {
     for other in others {
         match summary.methods.iter_mut().find(|known| known.method == other.method) {
@@ -31,8 +31,8 @@ pub fn add_methods(summary: &mut Summary, others: &[MethodSummary]) {
     }
 }
 
-/// Of a model that consists of these subsystems. What depends on the whole model's bounds (errors, contributions)
-/// and names (parameters) is that of the first.
+/// Summary of a model that consists of these subsystems. Results that depend on the whole model's bounds (errors,
+/// contributions) and names (parameters) are taken from the first.
 ///
 /// # Panics
 /// Without any.
@@ -166,7 +166,7 @@ fn cost_of_both(one: EffectCost, other: EffectCost) -> EffectCost {
     EffectCost { active: one.active + other.active, inactive: conditional.then(|| inactive(&one) + inactive(&other)) }
 }
 
-/// Of a model that consists of these subsystems.
+/// Explanation of a model that consists of these subsystems.
 ///
 /// # Panics
 /// Without any.

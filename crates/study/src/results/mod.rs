@@ -1,4 +1,4 @@
-//! What a run yields, as data only.
+//! Results of a run, as data only.
 
 mod allocation;
 mod analysis;

@@ -42,7 +42,7 @@ pub struct Poses {
     /// (time, coordinate of the pose)
     pub bodies: Vec<f64>,
     /// (point, 3), m: of each body, the ground first, the points of [`DrawnBody`](super::DrawnBody), then its centre of
-    /// mass where it has one. They do not move in their frames, but depend on parameters.
+    /// mass if it has one. They do not move in their frames, but depend on parameters.
     pub points: Vec<f64>,
 }
 
@@ -53,7 +53,7 @@ pub struct MovingForce {
     pub name: String,
     /// Whether it is a joint's, on its second body.
     pub is_reaction: bool,
-    /// (time, 6): its place, m, and the force, N.
+    /// (time, 6): its point, m, and the force, N.
     pub values: Vec<f64>,
 }
 
@@ -77,8 +77,8 @@ pub struct WorstMotion {
     pub poses: Poses,
 }
 
-/// Deviation from the nominal motion: sums of products of Chebyshev polynomials in ξ ∈ [−1, 1], a parameter's place
-/// between the ends of its interval.
+/// Deviation from the nominal motion: sums of products of Chebyshev polynomials in ξ ∈ [−1, 1], the normalised position
+/// of a parameter in its interval.
 #[derive(Clone, Debug)]
 pub struct MotionPolynomials {
     /// (term, parameter)
@@ -92,7 +92,7 @@ pub struct MotionPolynomials {
     pub bodies: Vec<f64>,
     /// (number of the points, term)
     pub points: Vec<f64>,
-    /// How far a point of a body is from its simulated place, m: at most, over all times and samples that the
+    /// Largest distance of a point of a body from its simulated position, m, over all times and the samples that the
     /// polynomials were not made from.
     pub error: f64,
 }

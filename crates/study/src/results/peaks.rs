@@ -1,4 +1,4 @@
-//! The smallest and largest value of a band over the run, with what may lie between the rows that it is read from.
+//! The smallest and largest value of a band over the run, with an allowance for peaks between its rows.
 
 use serde::Serialize;
 
@@ -28,12 +28,12 @@ pub struct Peak {
     pub time: f64,
     /// Value in the row.
     pub value: f64,
-    /// The row's own error with what may lie between rows; NaN where a row is unknown.
+    /// The row's own error with the allowance for a peak between rows; NaN if a row is unknown.
     pub error: f64,
 }
 
 impl PeakSummary {
-    /// Of every band.
+    /// Peaks of every band.
     pub fn of(bounds: &Bounds) -> Vec<Self> {
         let of_band = |output: &OutputBounds, band: &Band| {
             let negative: Vec<f64> = band.lower.iter().map(|value| -value).collect();

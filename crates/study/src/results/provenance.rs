@@ -2,13 +2,13 @@
 
 use serde::Serialize;
 
-/// Enough to tell whether another result is of the same model and the same request.
+/// Identifies model and request of a result, for a comparison with another result.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Provenance {
     /// Every file that was read: the model, its robot, its tables. Empty for a model that is no file.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub model_files: Vec<ModelFile>,
-    /// What the command asked for beside what the model says.
+    /// Request of the command in addition to the model.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub request: Option<RunRequest>,
 }
@@ -22,7 +22,7 @@ pub struct ModelFile {
     pub sha256: String,
 }
 
-/// What a command asked for beside what the model says.
+/// Request of a command in addition to the model.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct RunRequest {
     /// Parameters that were set, e.g. `l1=0.16±2%`.

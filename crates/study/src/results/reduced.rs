@@ -20,7 +20,7 @@ pub struct ReducedSummary {
     pub nominal: f64,
     /// Bounds by every method, in the order of [`Method`](super::Method).
     pub bands: Vec<ReducedBand>,
-    /// Which tolerance matters, the largest total index first; empty where it is not known.
+    /// Contributions of the parameters, the largest total index first; empty if unknown.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub contributions: Vec<ReducedContribution>,
     /// The simulated sample with the smallest value, and the one with the largest; absent where no sample has a value.
@@ -47,7 +47,7 @@ pub struct ReducedBand {
     pub surrogate: f64,
     /// The part of the error that is due to time steps.
     pub time: f64,
-    /// Whether the bounds are not resolved: their error is too large beside their width.
+    /// Whether the bounds are not resolved: their error is too large relative to their width.
     pub unresolved: bool,
 }
 
@@ -56,9 +56,9 @@ pub struct ReducedBand {
 pub struct ReducedContribution {
     /// Name of the parameter.
     pub parameter: String,
-    /// First-order Sobol index: what varies with this parameter alone.
+    /// First-order Sobol index: variance due to this parameter alone.
     pub main: f64,
-    /// Total Sobol index: what varies with this parameter and its interactions.
+    /// Total Sobol index: variance due to this parameter and its interactions.
     pub total: f64,
     /// Width of the range if this parameter were at its nominal value.
     pub width_without: f64,

@@ -60,7 +60,7 @@ pub struct RequirementSummary {
     /// The simulated sample that is nearest to failing, or fails most; absent where none was simulated.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub nearest: Option<NearestCase>,
-    /// What would decide it, where it is undecided.
+    /// Advice on how to decide it, if it is undecided.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub decides: Option<String>,
     /// Limits that are constants, for marks in plots.

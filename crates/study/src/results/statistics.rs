@@ -1,11 +1,11 @@
-//! How outputs are distributed, beside their bounds.
+//! Distributions of outputs, in addition to their bounds.
 
 use serde::Serialize;
 
 use crate::grammar::display_unit::DisplayUnit;
 
-/// An estimate with its error: `sampling` is the half width of the 95 % confidence interval, `error` what the surrogate
-/// and the time steps may add.
+/// An estimate with its error: `sampling` is the half width of the 95 % confidence interval, `error` the possible
+/// contribution of the surrogate and the time steps.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Uncertain {
     /// The estimate.
@@ -87,13 +87,13 @@ pub struct StatisticsSummary {
     pub parameters: Vec<LawSummary>,
     /// Shares below the quantiles.
     pub quantiles: Vec<f64>,
-    /// How much of the laws lies outside of what the surrogate was made for; samples are drawn from the rest.
+    /// Probability outside the domain of the surrogate; samples are drawn from the rest.
     pub left_out: f64,
     /// How much of the laws lies outside of the box that is bounded, at most.
     pub outside: f64,
     /// Simulations for a surrogate beyond the box, where laws reach beyond it.
     pub simulations: usize,
-    /// Number of simulated products, where they tell the errors.
+    /// Number of simulated products, if the errors are determined by them.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub products: Option<usize>,
     /// By output, where it varies most.
@@ -110,7 +110,7 @@ pub struct StatisticsSummary {
     /// Under random excitations: motions are the samples.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub random: Option<RandomSummary>,
-    /// What prevents it, or a part of it.
+    /// Reason why it, or a part of it, is missing.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub failure: Option<String>,
 }
@@ -153,10 +153,10 @@ pub struct OutputStatisticsSummary {
     pub deviation: Uncertain,
     /// In the order of the shares.
     pub quantiles: Vec<Uncertain>,
-    /// Of a stack of dimensions: how it follows each uncertain parameter, the largest deviation first.
+    /// Sensitivities of a stack of dimensions to each uncertain parameter, the largest deviation first.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub sensitivities: Vec<Sensitivity>,
-    /// Of a stack of dimensions: how its samples are distributed.
+    /// Histogram of the samples of a stack of dimensions.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub histogram: Option<Histogram>,
 }
@@ -170,7 +170,7 @@ pub struct Sensitivity {
     pub derivative: f64,
     /// ∂y/∂p Δp, with its sign: Δp is the larger deviation of the parameter from its nominal value.
     pub deviation: f64,
-    /// Of the sum of all squared deviations.
+    /// Share of the sum of all squared deviations.
     pub share: f64,
 }
 
@@ -211,12 +211,12 @@ pub struct YieldSummary {
     pub requirement: String,
     /// The share that fulfils it.
     pub share: f64,
-    /// Its 95 % confidence interval, widened by what the surrogate's and the steps' error and what lies outside of the
-    /// surrogate may do.
+    /// Its 95 % confidence interval, widened by the errors of surrogate and steps and by the probability outside the
+    /// domain of the surrogate.
     pub interval: [f64; 2],
     /// Parts per million that do not fulfil it, and the same interval.
     pub ppm: f64,
-    /// Of `ppm`.
+    /// The same interval of `ppm`.
     pub ppm_interval: [f64; 2],
     /// Under random excitations: failures within a longer time.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -233,7 +233,7 @@ pub struct YieldSummary {
     pub time: Option<f64>,
     /// Samples.
     pub samples: usize,
-    /// Where so few fail that samples look for them: by what the share was found.
+    /// Method that found the share, if failures are too rare for plain samples.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub method: Option<String>,
 }

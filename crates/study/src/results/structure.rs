@@ -2,16 +2,16 @@
 
 use serde::Serialize;
 
-/// Mobility, size, mass and what moves a mechanism.
+/// Mobility, size, mass and loads of a mechanism.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Structure {
     /// How free it is to move.
     pub mobility: MobilityCount,
     /// Extent of all bodies and points along x, y and z at the start, m.
     pub size: [f64; 3],
-    /// Of all bodies.
+    /// Mass of all bodies.
     pub mass: MassRange,
-    /// The sum of all gravities, m/s²; `None` where there is none.
+    /// The sum of all gravities, m/s²; `None` without gravity.
     pub gravity: Option<[f64; 3]>,
     /// Other effects that push or pull, by kind.
     pub acting: Vec<KindCount>,
@@ -21,7 +21,7 @@ pub struct Structure {
     pub moves_at_start: bool,
 }
 
-/// The count of Grübler (in the plane) or Kutzbach (in space), and what the constraints' rank says.
+/// The count of Grübler (in the plane) or Kutzbach (in space), and the mobility by the rank of the constraints.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct MobilityCount {
     /// Whether bodies have six freedoms instead of three.
@@ -32,13 +32,13 @@ pub struct MobilityCount {
     pub joints: usize,
     /// Their constraints.
     pub constraints: usize,
-    /// Freedoms that bodies lack because their coordinates are held.
+    /// Freedoms that bodies lack because their coordinates are prescribed.
     pub held: usize,
     /// Motors and other motions that are prescribed.
     pub drives: usize,
     /// Freedoms of all bodies less `constraints` and `held`.
     pub count: i64,
-    /// As many as there are without drives, by the rank of the constraints.
+    /// Number of degrees of freedom without drives, by the rank of the constraints.
     pub mobility: usize,
     /// Constraints that others imply: the difference between both.
     pub over_constrained: usize,

@@ -12,8 +12,8 @@ use crate::grammar::display_unit::DisplayUnit;
 use crate::methods::TooDeep;
 use crate::syntax::Code;
 
-/// What a run did; serialised as it stands. Holds nothing that differs between two runs of one command, except
-/// `seconds`, which are there only when asked for.
+/// Record of a run; serialised as it stands. Contains nothing that differs between two runs of one command, except
+/// `seconds`, which are present only on request.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Summary {
     /// Name of the model, and of the scene after a slash.
@@ -36,7 +36,7 @@ pub struct Summary {
     /// Names of constraints that others imply at the start only.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub singular_at_start: Vec<String>,
-    /// Coordinates that share what the model leaves open of the start.
+    /// Coordinates that share the freedom which the model leaves at the start.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub shared_start: Vec<String>,
     /// Singular configurations that the nominal motion passes.
@@ -54,7 +54,7 @@ pub struct Summary {
     /// From when on some parameter values meet a contact, a stop or a kink that no sample meets, s.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub unmet_switch: Option<f64>,
-    /// From when on fixed steps pass over what a force does in time or in space, s.
+    /// First time at which fixed steps pass over a change of a force in time or in space, s.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub passed_force: Option<f64>,
     /// Contacts whose surfaces overlap at the start, where other forces do not press them together.
@@ -67,7 +67,7 @@ pub struct Summary {
     /// that need the sample are unresolved.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub beyond_tolerance: Option<f64>,
-    /// By what the motion was integrated, where that was not HHT-I3 alone.
+    /// The integration method, unless it was HHT-I3 alone.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub integration: Option<String>,
     /// The parameter α of HHT-I3.
@@ -82,17 +82,17 @@ pub struct Summary {
     pub black_box: Option<BlackBoxSummary>,
     /// The uncertain parameters.
     pub parameters: Vec<ParameterSummary>,
-    /// Of each assembly that the model has instances of: which tolerances are one for all of them.
+    /// Tolerances of the assemblies that the model has instances of: shared by all instances, or independent.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub assemblies: Vec<AssemblySummary>,
     /// Chains of dimensions.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub chains: Vec<ChainSummary>,
-    /// What each method took.
+    /// Cost of each method.
     pub methods: Vec<MethodSummary>,
-    /// Of every band.
+    /// Errors of every band.
     pub errors: Vec<ErrorSummary>,
-    /// What excitations do to outputs, as constants and as functions of the time.
+    /// Effect of excitations on outputs, as constants and as functions of the time.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub excitations: Vec<ExcitationSummary>,
     /// Random excitations, of which bounds of a motion have one realisation.
@@ -116,26 +116,26 @@ pub struct Summary {
     /// Parts of the model that no output depends on: `body pendulum`.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub not_simulated: Vec<String>,
-    /// Where the model consists of several subsystems, which do not interact: what each is and took.
+    /// Subsystems that do not interact, with the cost of each; empty if the model is one system.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub subsystems: Vec<SubsystemSummary>,
-    /// Set when the run stopped early: what happened, and up to which time results were kept.
+    /// Set when the run stopped early: the reason, and the time up to which results were stored.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub failure: Option<String>,
-    /// The code of the kind of mistake that stopped it, where it is one.
+    /// The code of the kind of mistake that stopped it, if it was a mistake.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub failure_code: Option<Code>,
     /// Whether it ended before it was done, since it was asked to or took too long.
     #[serde(skip)]
     pub is_cut: bool,
-    /// The formulation in which other questions of the model are compiled: where it is one subsystem, of which nothing
-    /// is left out and no bodies move as one.
+    /// The formulation in which other questions of the model are compiled; set if the model is one subsystem from which
+    /// nothing is omitted and in which no bodies move as one.
     #[serde(skip)]
     pub chosen_formulation: Option<FormulationInfo>,
 }
 
 impl Summary {
-    /// The same without what differs from run to run.
+    /// The same without values that differ from run to run.
     #[must_use]
     pub fn without_seconds(&self) -> Self {
         let mut summary = self.clone();
@@ -217,7 +217,7 @@ pub struct SubsystemSummary {
     pub coordinates: usize,
     /// Number of constraint equations.
     pub constraints: usize,
-    /// What each method took.
+    /// Cost of each method.
     pub methods: Vec<MethodSummary>,
 }
 
@@ -242,7 +242,7 @@ pub struct ErrorSummary {
     pub surrogate: f64,
     /// Largest part of it that is due to time steps.
     pub time: f64,
-    /// The first time at which the band is not resolved, s; absent where there is none.
+    /// The first time at which the band is not resolved, s; absent if it is resolved throughout.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub unresolved_from: Option<f64>,
 }
@@ -255,13 +255,13 @@ pub struct ContributionSummary {
     pub output: String,
     /// Name of the parameter.
     pub parameter: String,
-    /// First-order index: what varies with this parameter alone.
+    /// First-order index: variance due to this parameter alone.
     main: f64,
-    /// Total index: what varies with this parameter and its interactions.
+    /// Total index: variance due to this parameter and its interactions.
     pub total: f64,
 }
 
-/// What a method took. `method` is `nominal`, `validation` or a bounding method's name.
+/// Cost of a method. `method` is `nominal`, `validation` or a bounding method's name.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct MethodSummary {
     /// Its name.
@@ -289,7 +289,7 @@ pub struct MethodSummary {
 }
 
 impl ContributionSummary {
-    /// Of all outputs' bounds, the largest of each output first.
+    /// Contributions to all outputs' bounds, the largest of each output first.
     pub fn of(bounds: &Bounds) -> Vec<Self> {
         let of_output = |(output, contributions): (&OutputBounds, &Vec<Contribution>)| {
             let band = output.bands.iter().find(|band| band.method.about().has_sensitivities);
@@ -315,7 +315,7 @@ impl ContributionSummary {
 }
 
 impl ErrorSummary {
-    /// Of every band.
+    /// Errors of every band.
     pub fn of(bounds: &Bounds) -> Vec<Self> {
         let of_band = |output: &OutputBounds, band: &Band| ErrorSummary {
             output: output.name.clone(),
@@ -355,9 +355,9 @@ pub struct EventsFollowed {
 pub struct EventSummary {
     /// The term of the equations that switches, and where.
     pub event: String,
-    /// Number of samples that were followed, and of those that meet it.
+    /// Number of samples that were followed.
     pub samples: usize,
-    /// Of these.
+    /// Number of samples that meet it.
     pub met: usize,
     /// Value of a parameter, SI, at which it is just grazed while the others are nominal.
     pub grazed_at: Vec<(String, f64)>,

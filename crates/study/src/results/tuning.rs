@@ -8,7 +8,7 @@ tuning! {
         /// Most parameters for which the set is paved.
         most_parameters: usize = 6, moves "which fits have a consistent set";
         /// How much higher than both ends of an interval a curve may be, relative to the largest second difference
-        /// around it: twice what a parabola has.
+        /// around it: twice the value of a parabola.
         between_rows: f64 = 0.25, moves "the largest and smallest value of a band over the run";
         /// Share of a power, or of a derivative, that is rounding.
         rounding: f64 = 1e-9, moves "verdicts of verifications";
@@ -20,7 +20,7 @@ tuning! {
         /// before errors are those of rounding; errors that get there at a higher order than this are as in theory,
         /// too.
         high_order: f64 = 4.0, moves "verdicts of verifications";
-        /// Orders that exceed that of theory by more than this factor tell only that they do.
+        /// Orders that exceed that of theory by more than this factor show only that they do.
         far_above_theory: f64 = 1.5, moves "verdicts of verifications";
         /// An error that falls by less than this order, and is small, is rounding's.
         flat_order: f64 = 1.0, moves "verdicts of verifications";

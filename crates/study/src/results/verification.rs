@@ -1,4 +1,4 @@
-//! What a verification of a model found.
+//! Results of a verification of a model.
 
 use serde::Serialize;
 use symdiff::math;
@@ -39,9 +39,9 @@ impl Quantity {
 /// Errors of a quantity against an exact motion, with shorter and shorter steps.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Convergence {
-    /// Of what.
+    /// The quantity whose error is measured.
     pub quantity: Quantity,
-    /// The order that theory tells.
+    /// The order predicted by theory.
     pub theory: f64,
     /// Step, s, and largest error as a share of the quantity's size, from the longest steps on.
     pub errors: Vec<(f64, f64)>,
@@ -51,7 +51,7 @@ pub struct Convergence {
     pub rounding: f64,
     /// The observed order that counts; `None` where steps of any length are exact.
     pub order: Option<f64>,
-    /// Whether the error falls as theory tells.
+    /// Whether the error falls as theory predicts.
     pub is_verified: bool,
 }
 
@@ -66,7 +66,7 @@ pub struct SchemeVerification {
     pub failure: Option<String>,
 }
 
-/// What an effect does to the mechanism's energy.
+/// Effect on the mechanism's energy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Exchange {
@@ -101,9 +101,9 @@ pub struct EffectBalance {
     pub kind: String,
     /// Largest power that it exchanges with the bodies, W.
     pub power: f64,
-    /// Largest power that it puts in beside the one that its potential energy loses, W.
+    /// Largest power that it puts in, in addition to the loss of its potential energy, W.
     pub put_in: f64,
-    /// Largest power that it takes beside the one that its potential energy gains, W.
+    /// Largest power that it takes, in addition to the gain of its potential energy, W.
     pub taken: f64,
 }
 
@@ -171,7 +171,7 @@ impl DerivativeCheck {
     }
 }
 
-/// What a formulation's equations were found to be.
+/// Findings about a formulation's equations.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FormulationVerification {
     /// `absolute` or `joint`.
@@ -184,7 +184,7 @@ pub struct FormulationVerification {
     pub redundant: Vec<String>,
     /// Names of constraints that depend on others at the start only.
     pub singular_at_start: Vec<String>,
-    /// Where the manufactured motion begins in the run, s: behind what switches, where that is not at its start.
+    /// Start of the manufactured motion in the run, s: after a switch, if it is not the start of the run.
     pub begin: f64,
     /// Length of the manufactured motion, s.
     pub duration: f64,
@@ -198,7 +198,7 @@ pub struct FormulationVerification {
     pub failure: Option<String>,
 }
 
-/// What a verification of a model found.
+/// Results of a verification of a model.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Verification {
     /// Name of the model.
@@ -208,7 +208,7 @@ pub struct Verification {
 }
 
 impl Convergence {
-    /// Of a quantity whose errors below `rounding` are none of the steps.
+    /// Convergence of a quantity whose errors below `rounding` are not due to the steps.
     pub fn new(quantity: Quantity, theory: f64, rounding: f64) -> Self {
         Self { quantity, theory, rounding, ..Self::default() }
     }
@@ -287,7 +287,8 @@ impl Convergence {
         largest(stated).map(|order| largest(reached).map_or(order, |below| order.max(below)))
     }
 
-    /// Whether shorter steps would tell no more: errors are those of rounding, or two orders are that of theory.
+    /// Whether shorter steps give no more information: errors are at the level of rounding, or two orders agree with
+    /// theory.
     pub fn is_settled(&self) -> bool {
         self.is_exact() || self.is_flat() || self.is_asymptotic()
     }
@@ -300,14 +301,14 @@ impl Convergence {
 }
 
 impl SchemeVerification {
-    /// Whether all errors fall as theory tells.
+    /// Whether all errors fall as theory predicts.
     pub fn is_verified(&self) -> bool {
         self.failure.is_none() && self.convergence.iter().all(|own| own.is_verified)
     }
 }
 
 impl FormulationVerification {
-    /// Whether all schemes do what theory tells.
+    /// Whether all schemes behave as theory predicts.
     pub fn is_verified(&self) -> bool {
         let is_balanced = self.balance.as_ref().is_none_or(PowerBalance::is_verified);
         let are_exact = self.derivatives.iter().all(DerivativeCheck::is_verified);

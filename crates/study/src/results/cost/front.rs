@@ -1,7 +1,7 @@
-//! Pareto's front: what nothing else betters.
+//! Pareto front: points that no other point dominates.
 
-/// Indices of those (error, seconds) that no other is as good as in both and better than in one, by rising error. Of
-/// equals the first is kept; points that are not finite are on no front.
+/// Indices of the pairs (error, seconds) that no other dominates (as good in both, better in one), by rising error. The
+/// first of equal points is retained; points that are not finite are on no front.
 pub fn pareto(points: &[(f64, f64)]) -> Vec<usize> {
     let mut indices: Vec<usize> = (0..points.len()).collect();
     indices.retain(|&index| points[index].0.is_finite() && points[index].1.is_finite());

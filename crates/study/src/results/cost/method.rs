@@ -1,4 +1,4 @@
-//! The curves of a study: how bounds are found, and what integrates the motion.
+//! The curves of a study: the method of the bounds, and the integrator of the motion.
 
 use crate::compile::Scheme;
 use crate::methods::Curve;
@@ -16,7 +16,7 @@ pub enum CostMethod {
     By(Integrator),
 }
 
-/// What integrates a motion in place of plain steps.
+/// Integrator of a motion in place of plain steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Integrator {
     /// HHT-I3 with steps h, h/2, … of several levels, extrapolated.
@@ -53,7 +53,7 @@ impl CostMethod {
         }
     }
 
-    /// What integrates in place of plain steps.
+    /// The integrator in place of plain steps, if any.
     pub fn integrator(self) -> Option<Integrator> {
         match self {
             Self::BoundsBy(_, integrator) | Self::By(integrator) => Some(integrator),

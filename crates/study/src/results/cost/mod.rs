@@ -1,4 +1,4 @@
-//! A work-precision study as data: what accuracy costs in time.
+//! A work-precision study as data: computing time against accuracy.
 
 #[doc(hidden)]
 pub mod example;

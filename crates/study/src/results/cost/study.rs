@@ -18,7 +18,7 @@ pub struct CostStudy {
     pub reference_seconds: f64,
     /// Time that it took, s.
     pub seconds: f64,
-    /// What errors are measured against.
+    /// Reference for the errors.
     pub reference: CostReference,
     /// Bounding methods, in the order in which they were run.
     pub bounds: Vec<CostPoint>,
@@ -39,7 +39,7 @@ impl CostStudy {
         self.reference.trajectory_error.is_finite()
     }
 
-    /// What a user can choose from: bounds or, without uncertain parameters, what a model can be run by.
+    /// Points among which a user can choose: bounds or, without uncertain parameters, methods that a model can ask for.
     fn choices(&self) -> impl Iterator<Item = &CostPoint> {
         let own = |point: &&CostPoint| {
             point.method.integrator().is_some() || matches!(point.method, CostMethod::Scheme(Scheme::Hht { .. }))
@@ -72,7 +72,7 @@ impl CostStudy {
     }
 }
 
-/// What errors are measured against: runs with three step sizes, extrapolated.
+/// Reference for the errors: runs with three step sizes, extrapolated.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CostReference {
     /// How it bounds.
@@ -85,7 +85,7 @@ pub struct CostReference {
     pub bounds_error: f64,
     /// Its own error in the nominal trajectory, estimated.
     pub trajectory_error: f64,
-    /// What the first of them is made of: where it comes from, and its size.
+    /// Contributions to `bounds_error`: source and size.
     pub parts: Vec<(String, f64)>,
 }
 
@@ -119,14 +119,14 @@ pub struct CostPoint {
 /// A setting's largest error over all outputs and rows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Deviation {
-    /// Of bounds.
+    /// Deviation of bounds.
     Bounds {
         /// How far they lie outside of the reference's.
         over_width: f64,
         /// Distance to the true ends, inside.
         under_coverage: f64,
     },
-    /// Of a trajectory.
+    /// Deviation of a trajectory.
     Trajectory(f64),
 }
 
@@ -147,7 +147,7 @@ impl CostPoint {
         (self.deviation.largest().max(own), self.seconds)
     }
 
-    /// Of a setting that has not been run, or in vain.
+    /// Point of a setting that has not been run, or that failed.
     pub fn without_result(method: CostMethod, step: Stepping) -> Self {
         let deviation = match method.curve() {
             None => Deviation::Trajectory(f64::INFINITY),
