@@ -5,8 +5,9 @@
 //! From there on quasi-Newton steps within the box go on (`climb`). Each sample serves all rows; an end that another
 //! one's sample improves is climbed to once more from there, and the rows between begin at the best of all samples.
 //!
-//! An end is attained. Its error is what its gradient still promises, and how far the second best of its climbs stayed
-//! behind: where they agree, there is one end; where they do not, there may be a better one as far beyond.
+//! An end is attained. Its error is the increase that its gradient still promises, and the distance by which the second
+//! best of its climbs stayed behind: if they agree, there is one end; if they do not, there may be a better one as far
+//! beyond.
 
 mod climb;
 mod ends;
@@ -33,10 +34,10 @@ pub(super) use slopes::{Slope, Slopes};
 use surface::{Surface, Surfaces};
 use tuning::TUNING;
 
-/// What the search found: its cost, the samples, and bounds.
+/// Result of the search: its cost, the samples, and bounds.
 type AttainedEnds = (Outcome, Attained, FollowedEnds);
 
-/// What methods found, and the ends that were searched for before.
+/// Results of the methods, and the ends that were searched for before.
 type BoundsAlong = (Vec<(Method, Outcome)>, Option<(Outcome, Attained)>);
 
 /// Bounds by every method that is wanted, which know the ends that were searched for before, where they were.
@@ -102,7 +103,7 @@ struct FollowedRow {
     surface: Option<Surface>,
 }
 
-/// What polynomials have in common, where points are enough for any, and all that are followed.
+/// Polynomials, if there are points enough for any, and the rows that are followed.
 type Followable = (Option<Surfaces>, Vec<FollowedRow>);
 
 /// The search.
@@ -113,9 +114,9 @@ struct AttainedSearch<'s, 'm> {
     attained: Attained,
     /// Error allowed of each output.
     allowed: Vec<f64>,
-    /// Simulations, and what gradients are worth.
+    /// Number of simulations, with gradients counted by their cost.
     work: usize,
-    /// Of these for a surrogate that is kept, which do not count against the budget of the ends.
+    /// The part of `work` for a surrogate that is stored, which does not count against the budget of the ends.
     work_of_kept: usize,
     begun: Instant,
     simulated: Simulated,

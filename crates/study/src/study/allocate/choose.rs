@@ -10,11 +10,11 @@ use symdiff::math;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Chosen {
     pub multiples: Vec<f64>,
-    /// Whether nothing cheaper was left out.
+    /// Whether no cheaper combination was omitted from the search.
     pub is_exhaustive: bool,
 }
 
-/// The cheapest multiples, looked for from some on; `None` where not even the tightest are good enough.
+/// The cheapest multiples, searched from `start` on; `None` if not even the tightest are good enough.
 pub fn choose(slack: &mut dyn Slack, items: &[Item], start: &[f64]) -> Option<Chosen> {
     let tightest: Vec<f64> = items.iter().map(Item::tightest).collect();
     if !is_good(slack, &tightest) {

@@ -1,10 +1,10 @@
-//! The tolerances of a model, and what may become of each.
+//! The tolerances of a model, and the choices for each.
 
 use super::tuning::TUNING;
 use crate::model::{Cost, Description, Grade, Law, ParameterValue};
 use crate::numerics::statistics::Distribution;
 
-/// What may become of a tolerance, in multiples of the model's.
+/// Choices for a tolerance, in multiples of the model's.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Choice {
     /// It stays.
@@ -40,7 +40,7 @@ impl Item {
         }
     }
 
-    /// What a multiple costs; nothing where no cost is known.
+    /// Cost of a multiple; `None` if no cost is known.
     pub fn cost(&self, multiple: f64) -> Option<f64> {
         match &self.choice {
             Choice::Fixed | Choice::Together => None,

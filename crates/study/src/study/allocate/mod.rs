@@ -1,9 +1,9 @@
 //! Tolerances that are as loose, or as cheap, as the requirements allow.
 //!
 //! One run over the widest box (`items`, `wide`) gives a surrogate of the requirements' margins (`surface`). On it,
-//! `choose` finds the cheapest tolerances under what worst cases (`worst`) or yields (`share`) leave of the margins. A
-//! study of its own at the result then says whether they hold, its errors included; by its difference from the
-//! surrogate, the next round knows better.
+//! `choose` finds the cheapest tolerances under the margins that worst cases (`worst`) or yields (`share`) leave. A
+//! study of its own at the result then checks that they hold, its errors included; its difference from the surrogate
+//! corrects the next round.
 
 mod choose;
 mod items;
@@ -35,7 +35,7 @@ use worst::{Slack, Worst};
 pub struct AllocateOptions {
     /// The share of the production that fulfils all requirements; every case where absent.
     pub share: Option<f64>,
-    /// How many times the model's tolerances are looked at, at most.
+    /// Largest multiple of the model's tolerances that is examined.
     pub widest: f64,
 }
 
@@ -182,7 +182,7 @@ impl Allocator<'_> {
         Some(Surface::new(self.wide.kept.margins()?, &self.wide.items))
     }
 
-    /// What the requirements leave: every case, or a share of samples.
+    /// Remaining margins of the requirements: in every case, or in a share of samples.
     fn slack(&self) -> Result<Box<dyn Slack + '_>, AllocateError> {
         let Some(surface) = self.surface() else {
             return Err(AllocateError::Unsuitable("there is no surrogate over the whole box".to_owned()));
@@ -199,7 +199,7 @@ impl Allocator<'_> {
         let options = of(self.options);
         let (_, summary) = if let Some(share) = self.asked.share {
             model.statistics.asked = true;
-            // That much is to be told.
+            // The quantile to be reported.
             model.statistics.quantiles = vec![share];
             // Of requirements only: quantiles of outputs over time cost more than all else, and nothing here reads
             // them.

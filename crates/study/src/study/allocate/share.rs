@@ -1,4 +1,4 @@
-//! Yields: what the worst of most samples leaves, and how that changes with the tolerances.
+//! Yields: the margin that the worst of most samples leaves, and its change with the tolerances.
 
 use super::surface::Surface;
 use super::tuning::TUNING;
@@ -10,7 +10,7 @@ use crate::numerics::{Linear, Power};
 use crate::study::statistics::Laws;
 use crate::study::statistics::tuning::TUNING as STATISTICS;
 
-/// What a share of samples leaves of all requirements.
+/// Remaining margin of all requirements in a share of samples.
 pub struct Share<'s> {
     pub surface: Surface<'s>,
     laws: Laws,
@@ -20,7 +20,7 @@ pub struct Share<'s> {
     drawn: Option<Drawn>,
 }
 
-/// Samples of the model's own laws, with what each stands for.
+/// Samples of the model's own laws, with their weights.
 struct Drawn {
     /// For which multiples.
     multiples: Vec<f64>,
@@ -64,8 +64,8 @@ impl<'s> Share<'s> {
         Drawn { multiples: multiples.to_vec(), samples, weights }
     }
 
-    /// Laws about the places at the distance of what may fail at which each requirement has least left, the least of
-    /// all first.
+    /// Laws about the points of least remaining margin, by requirement, at the distance that corresponds to `may_fail`;
+    /// the least of all first.
     fn mixture(&self, multiples: &[f64]) -> Mixture {
         let distance = -normal_quantile(self.may_fail);
         let slacks = |points: &[Vec<f64>]| {
@@ -185,7 +185,7 @@ impl Slack for Share<'_> {
         self.may_fail = may_fail;
     }
 
-    /// The quantile of what all leave together.
+    /// The quantile of the least slack over all requirements.
     fn least(&mut self, multiples: &[f64]) -> f64 {
         let (slacks, weights) = self.slacks(multiples);
         weighted_quantile(&self.worst(&slacks, weights.len()), &weights, self.may_fail)

@@ -19,8 +19,9 @@ pub struct Surface<'k> {
 }
 
 impl<'k> Surface<'k> {
-    /// Of all requirements, with the surrogate's errors in reserve. Of many parameters these are of corners that no
-    /// box comes near which meets the requirements: there the studies that confirm a choice correct them.
+    /// Margins of all requirements, with the surrogate's errors in reserve. With many parameters these errors are those
+    /// of corners that no box comes near in which the requirements hold: there the studies that confirm a choice
+    /// correct them.
     pub fn new(kept: Margins<'k>, items: &'k [Item]) -> Self {
         let count = kept.count();
         let mut surface = Self { kept, items, count, nominal: vec![1.0; count], reserves: vec![0.0; count] };

@@ -5,7 +5,7 @@ use symdiff::constants::tuning;
 tuning! {
     /// Tolerances that a study chooses.
     "study: allocate" {
-        /// Rounds of linearisation: of worst cases, and of samples, which tell less.
+        /// Rounds of linearisation: of worst cases, and of samples, which give less information.
         rounds_of_choice: [usize; 2] = [40, 12], moves "tolerances that are found";
         /// Factor by which a multiple may change in the first round; later rounds allow less.
         first_change: f64 = 2.0, moves "tolerances that are found";
@@ -26,22 +26,22 @@ tuning! {
         digits: i32 = 4, moves "tolerances that are found";
         /// Most studies that confirm tolerances.
         confirming_rounds: usize = 4, moves "tolerances that are found";
-        /// Share of a nominal margin that a study may leave before another round looks for more.
+        /// Share of a nominal margin that a study may leave unused before another round searches for more.
         unused: f64 = 5e-3, moves "tolerances that are found";
         /// Most studies that confirm a yield.
         rounds_of_share: usize = 6, moves "tolerances that are found";
         /// Share of all tolerances for which more rounds of a yield are worth it.
         unused_of_share: f64 = 5e-4, moves "tolerances that are found";
-        /// Share of the products that may fail which is aimed at: what samples tell of it differs a little from study
+        /// Share of the products that may fail which is aimed at: its estimate from samples differs a little from study
         /// to study.
         aim: f64 = 0.997, moves "tolerances that are found";
         /// Shares of the nominal margins for which the cost is reported.
         traded: usize = 6, moves "the list of costs beside margins";
         /// Points of each replicate. The confirming study finds the rest.
         points: usize = 1 << 9, moves "tolerances that are found for a yield";
-        /// If less than this share may fail, points are drawn about the places that fail first.
+        /// If less than this share may fail, points are drawn about the points that fail first.
         rare: f64 = 0.1, moves "tolerances that are found for a yield";
-        /// Most places that fail about which points are drawn for a requirement.
+        /// Most failing points about which points are drawn for a requirement.
         places: usize = 6, moves "tolerances that are found for a yield";
         /// Points are drawn again where a multiple is another by this factor.
         redrawn: f64 = 1.2, moves "tolerances that are found for a yield";
@@ -61,7 +61,7 @@ tuning! {
         raised_orders: usize = 3, moves "which surrogate tolerances are found by";
         /// A difference quotient's step, as a share of a multiple.
         step_of_difference: f64 = 1e-3, moves "tolerances that are found";
-        /// Worst cases whose places are nearer than this are one, in ξ.
+        /// Worst cases whose points are nearer than this are one, in ξ.
         same_place: f64 = 0.05, moves "tolerances that are found";
     }
 }

@@ -87,7 +87,7 @@ pub fn largest_error(surface: &Surface) -> f64 {
     (0..surface.count).map(|index| surface.error(index) / surface.scale(index)).fold(0.0, f64::max)
 }
 
-/// Raises the order, where it is given and the budget allows it.
+/// Raises the order, if it is given and the budget allows it.
 pub fn raise(model: &mut Description) -> bool {
     let budget = model.bounds.budget.simulations as f64;
     let Some(Chebyshev { degree: Degree::Fixed { order, nodes }, .. }) = &mut model.bounds.chebyshev else {

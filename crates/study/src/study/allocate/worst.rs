@@ -4,12 +4,12 @@ use super::surface::Surface;
 use super::tuning::TUNING;
 use crate::numerics::{ExtremeSearch, Extremes, Linear, Power};
 
-/// What requirements leave of tolerances.
+/// Margins that requirements leave under tolerances.
 pub trait Slack {
     /// Remaining margin of each requirement with these multiples of the tolerances.
     fn left(&mut self, multiples: &[f64]) -> Vec<f64>;
 
-    /// Whether something that is known already tells that too little is left.
+    /// Whether known worst cases show already that a margin is exceeded.
     fn is_known_to_fail(&self, multiples: &[f64]) -> bool;
 
     /// Remaining margin, linearised in a power of the multiples.
@@ -18,19 +18,19 @@ pub trait Slack {
     /// In which power.
     fn power(&self) -> Power;
 
-    /// Derivatives of a requirement's remaining margin with respect to the multiples, where it is least.
+    /// Derivatives of a requirement's remaining margin with respect to the multiples, at its least value.
     fn slopes_at_least(&mut self, multiples: &[f64], requirement: usize) -> Vec<f64>;
 
     /// Correction subtracted from each margin, in its unit.
     fn reserves(&mut self) -> &mut [f64];
 
-    /// Whether a search is to end where it is.
+    /// Whether a search has to end now.
     fn is_interrupted(&self) -> bool;
 
     /// Lets another share fail, where one may.
     fn allow(&mut self, _: f64) {}
 
-    /// What each tolerance takes of a requirement's margin, as a share of what all take.
+    /// Share of each tolerance in the consumed margin of a requirement.
     fn shares(&mut self, multiples: &[f64], requirement: usize) -> Vec<f64> {
         let slopes = self.slopes_at_least(multiples, requirement);
         let taken: Vec<f64> = slopes.iter().zip(multiples).map(|(slope, multiple)| (slope * multiple).abs()).collect();
@@ -39,7 +39,7 @@ pub trait Slack {
         taken.into_iter().map(|own| if all > 0.0 { own / all } else { 0.0 }).collect()
     }
 
-    /// What requirements leave at least.
+    /// Least remaining margin of all requirements.
     fn least(&mut self, multiples: &[f64]) -> f64 {
         self.left(multiples).into_iter().fold(f64::INFINITY, |a, b| if b < a || b.is_nan() { b } else { a })
     }

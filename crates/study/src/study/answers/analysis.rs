@@ -1,4 +1,4 @@
-//! What analyses other than a motion add to a run's results.
+//! Results of analyses other than a motion, added to those of a run.
 
 use crate::model::{Analysis, Description};
 use crate::results::{AnalysisSummary, Band, Bounds, OutputBounds, ResponsePoint, Summary, ValueSummary};
@@ -21,7 +21,7 @@ pub fn analysis_summary(study: &Study) -> Option<AnalysisSummary> {
     Some(summary)
 }
 
-/// Takes the frequency responses out of the outputs, and notes what an analysis of one configuration found.
+/// Takes the frequency responses out of the outputs, and stores the results of an analysis of one configuration.
 pub fn arrange(description: &Description, bounds: &mut Bounds, summary: &mut Summary) {
     let frequencies = || {
         let of = |response: &crate::model::ResponseRequest| {
@@ -54,7 +54,7 @@ pub fn arrange(description: &Description, bounds: &mut Bounds, summary: &mut Sum
     {
         analysis.values = bounds.outputs.iter().map(|output: &OutputBounds| ValueSummary::of(output)).collect();
         let has_growth = matches!(description.analysis, Analysis::Modes(_)) && !description.states.is_empty();
-        // It is the first result beside the model's outputs.
+        // It is the first result after the model's outputs.
         if let Some(growth) = analysis.values.get(description.outputs.len()).filter(|_| has_growth) {
             analysis.growth = Some(growth.nominal);
             analysis.largest_growth = growth.bounds.iter().map(|(_, _, upper, _)| *upper).reduce(f64::max);

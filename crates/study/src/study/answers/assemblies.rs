@@ -3,7 +3,7 @@
 use crate::model::{Description, InstanceKind, ParameterValue};
 use crate::results::AssemblySummary;
 
-/// Of each assembly that the model has instances of, in the order of the first instances.
+/// Summaries of the assemblies that the model has instances of, in the order of the first instances.
 pub fn of(description: &Description) -> Vec<AssemblySummary> {
     let mut found: Vec<AssemblySummary> = Vec::new();
     for instance in &description.instances {
@@ -26,7 +26,7 @@ pub fn of(description: &Description) -> Vec<AssemblySummary> {
     found
 }
 
-/// Whether a parameter is one of the instance itself, or a number of its place.
+/// Whether a parameter is one of the instance itself, or a number of its position (`at`).
 fn is_own(name: &str) -> bool {
     !name.strip_prefix("at.").unwrap_or(name).contains('.')
 }

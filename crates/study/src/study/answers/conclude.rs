@@ -1,4 +1,4 @@
-//! From what methods found under one schedule to bounds and a summary.
+//! Bounds and a summary from the results of the methods under one schedule.
 
 use super::analysis::analysis_summary;
 use super::functions::{excitations, function_witnesses};
@@ -30,14 +30,14 @@ use crate::syntax::{Code, Coded};
 const INTERRUPTED: &str =
     "interrupted: methods that were done are kept, of the one that was not what it had found of every sample";
 
-/// Why a run ended early, or which of its results are left out, for people.
+/// Why a run ended early, or which of its results are omitted, for people.
 pub struct Note {
     text: String,
     code: Option<Code>,
 }
 
 impl Note {
-    /// The error that stopped a run, and the results that are kept.
+    /// The error that stopped a run, and the results that are stored.
     pub fn of(error: &SimulationError, kept: &str) -> Self {
         Self { text: format!("{error}; {kept}"), code: error.code() }
     }
@@ -50,7 +50,7 @@ impl Note {
 /// Bounds up to the last row of which something is known, and the summary.
 pub fn conclude(study: &Study, mut results: Results, note: Option<Note>) -> Ran {
     let stop = results.bounded.stops().min_by_key(|(stop, _)| (stop.row, stop.sample)).cloned();
-    // Where one method cannot go on, its bounds are unknown from there on, and the others' are kept.
+    // If one method cannot go on, its bounds are unknown from there on; the bounds of the others remain.
     let rows = results.bounded.outcomes().map(|outcome| outcome.result.reached).max().unwrap_or(0);
     let outputs = study.simulator.system.outputs.iter().enumerate().map(|(index, output)| OutputBounds {
         name: output.name.clone(),
@@ -120,7 +120,7 @@ fn witnesses(results: &Results, rows: usize) -> Vec<Witness> {
     all.flat_map(|(row, output)| [false, true].map(|is_upper| of_end(row, output, is_upper))).flatten().collect()
 }
 
-/// What happened where a sample stopped, for people.
+/// The reason why a sample stopped, for people.
 fn failure(study: &Study, schedule: &Schedule, stop: &Stop, sample: &Sample) -> Note {
     let parameters = study.simulator.with_names(sample);
     let Stop { sample: index, time, .. } = *stop;

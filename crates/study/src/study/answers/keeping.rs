@@ -1,4 +1,4 @@
-//! What a study keeps of its surrogate after the run, with the error of its values.
+//! The part of a surrogate that a study stores after the run, with the error of its values.
 
 use super::results::Results;
 use crate::study::bounding::Outcome;
@@ -10,13 +10,13 @@ use crate::methods::{Keep, KeptSurrogate, Method, Refusal};
 use crate::numerics::{BandError, Sample, largest, step_error, surrogate_error};
 use crate::simulate::SimulationError;
 
-/// The method whose surrogate is kept.
+/// The method whose surrogate is stored.
 const METHOD: Method = Method::Chebyshev;
 
-/// Has the surrogate kept, and asks for the method that has one.
+/// Has the surrogate stored, and requests the method that has one.
 ///
 /// # Errors
-/// Where that method cannot bound the subsystem.
+/// If that method cannot bound the subsystem.
 pub fn keep_surrogate(study: &mut Study, keep: Keep) -> Result<(), Refusal> {
     let problem = problem(study.description, &study.simulator);
     study.request.keep = keep;
@@ -24,7 +24,8 @@ pub fn keep_surrogate(study: &mut Study, keep: Keep) -> Result<(), Refusal> {
     study.request.methods_mut().into_iter().try_for_each(|(_, method)| method.fit(&problem))
 }
 
-/// Surrogate kept of a run, with the errors of its values in the first `rows` rows; where requested and known.
+/// Stored surrogate of a run, with the errors of its values in the first `rows` rows; `None` if it is not requested or
+/// not known.
 pub fn kept(study: &Study, results: &mut Results, rows: usize) -> Option<KeptPart> {
     if !study.request.keep.is_any() {
         return None;
@@ -54,8 +55,8 @@ pub fn kept(study: &Study, results: &mut Results, rows: usize) -> Option<KeptPar
     Some(KeptPart { errors, ..part })
 }
 
-/// Errors of values anywhere in the box, by output: what the validation samples' differ by and what the method
-/// knows of its surrogate, and the time steps'.
+/// Errors of values anywhere in the box, by output: the surrogate's, from its deviation at validation samples and the
+/// method's own estimate, and those of the time steps.
 fn errors_of_values(
     study: &Study,
     part: &KeptPart,

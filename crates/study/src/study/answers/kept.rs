@@ -1,7 +1,7 @@
-//! The surrogates of a run, kept after it: outputs at any point of the box, in any row, without simulation.
+//! The surrogates of a run, stored after it: outputs at any point of the box, in any row, without simulation.
 //!
-//! Nothing is kept unless [`run_keeping`](super::run_keeping) is asked. It keeps coefficients and the compiled
-//! mechanism, from which [`Kept::evaluator`] compiles the loop closures through which outputs follow from expanded
+//! Nothing is stored unless [`run_keeping`](super::run_keeping) is asked. It stores coefficients and the compiled
+//! mechanism, from which [`Kept::evaluator`] compiles the loop closures that determine the outputs from expanded
 //! coordinates.
 
 use std::borrow::Cow;
@@ -51,7 +51,7 @@ struct Placed {
     requirements: Vec<usize>,
 }
 
-/// Evaluates the kept surrogate of a run.
+/// Evaluates the stored surrogate of a run.
 pub struct Evaluator<'k> {
     kept: &'k Kept,
     /// By subsystem, for each choice of independent coordinates.
@@ -78,13 +78,13 @@ impl Placed {
 }
 
 impl Kept {
-    /// Of all subsystems of a model of `outputs` outputs.
+    /// Surrogates of all subsystems of a model with `outputs` outputs.
     pub(in crate::study) fn of_parts(parts: Vec<(KeptPart, &Subsystem)>, outputs: usize) -> Self {
         let mut indices = vec![(0, 0); outputs];
         for (number, (_, subsystem)) in parts.iter().enumerate() {
             subsystem.outputs.iter().enumerate().for_each(|(index, &output)| indices[output] = (number, index));
         }
-        // What an analysis of one system adds to the model's outputs.
+        // Further outputs that an analysis of one system adds.
         if let [(part, _)] = parts.as_slice() {
             indices.extend((outputs..part.errors.len()).map(|index| (0, index)));
         }
@@ -168,7 +168,7 @@ impl Kept {
         self.parts.iter().any(|placed| placed.part.simulator.switches().is_some())
     }
 
-    /// How many outputs there are: the model's, and what an analysis adds.
+    /// Number of outputs: the model's, and those that an analysis adds.
     pub fn outputs(&self) -> usize {
         self.indices.len()
     }

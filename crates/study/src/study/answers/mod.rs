@@ -1,7 +1,7 @@
-//! From what methods found under one schedule to bounds, a summary and kept surrogates.
+//! Bounds, a summary and stored surrogates from the results of the methods under one schedule.
 //!
 //! `results` holds the findings, `conclude` makes bounds and the summary of it, with `analysis` and `assemblies`;
-//! `keeping` and `kept` keep surrogates for those who evaluate them after the run.
+//! `keeping` and `kept` store surrogates for evaluation after the run.
 
 mod analysis;
 mod assemblies;

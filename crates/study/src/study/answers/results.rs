@@ -16,7 +16,7 @@ pub struct Results {
     pub attained: Option<(Outcome, Attained)>,
     /// Cost of the search over functions of the time, where there was one.
     pub searched: Option<Outcome>,
-    /// Errors of this program; of what failed nothing is known.
+    /// Errors of this program; the results of the failed methods are unknown.
     pub internal: Vec<InternalError>,
     /// Reduced outputs.
     pub found: Found,
@@ -28,6 +28,6 @@ pub struct Ran {
     pub summary: Summary,
     /// Rows that every sample of every method has reached.
     pub whole: usize,
-    /// The surrogate, where it is to be kept.
+    /// The surrogate, if it is to be stored.
     pub kept: Option<KeptPart>,
 }

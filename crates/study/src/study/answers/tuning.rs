@@ -3,7 +3,7 @@
 use symdiff::constants::tuning;
 
 tuning! {
-    /// Bounds and summaries of what methods found.
+    /// Bounds and summaries from the results of the methods.
     "study: answers" {
         /// A mode is reported that moves an output by more than this share of its range.
         worth_telling: f64 = 1e-3, moves "which modes are reported";

@@ -44,7 +44,7 @@ pub(super) struct Climb {
     curvatures: Vec<Curvature>,
     /// Steps from the best point that were no better.
     failures: i32,
-    /// What a step promises at least.
+    /// Least promised gain of a step.
     worth: f64,
     pub is_done: bool,
 }
@@ -56,22 +56,22 @@ impl Climb {
         Self { end, start, best: None, curvatures: Vec::new(), failures: 0, worth, is_done: false }
     }
 
-    /// What a step promises at least to be taken.
+    /// Least promised gain for which a step is taken.
     pub fn worth(&self) -> f64 {
         self.worth
     }
 
-    /// The next point; `None` where nothing is to be gained.
+    /// The next point; `None` if no gain is to be expected.
     pub fn step(&self) -> Option<Vec<f64>> {
         let Some(best) = &self.best else { return Some(self.start.clone()) };
         let target = self.target(best);
-        // The first failure tells a curvature.
+        // The first failure yields a curvature.
         let share = 0.5_f64.powi((self.failures - 1).max(0));
         let is_worth = gain(best, &target) > self.worth;
         is_worth.then(|| target.iter().zip(&best.point).map(|(to, x)| x + share * (to - x)).collect())
     }
 
-    /// What the best point's gradient still promises; infinite where none is known.
+    /// Gain that the best point's gradient still promises; infinite if no gradient is known.
     pub fn promise(&self) -> f64 {
         let promise = self.best.as_ref().map_or(f64::INFINITY, |best| gain(best, &self.target(best)));
         if promise.is_nan() { f64::INFINITY } else { promise }
@@ -92,8 +92,8 @@ impl Climb {
         })
     }
 
-    /// The step to where the gradient vanishes, as far as the curvatures tell, along the axes along which it does not
-    /// do so already; `None` without any curvature.
+    /// The step to the point where the gradient vanishes, as predicted by the curvatures, along the axes along which it
+    /// does not vanish already; `None` without any curvature.
     fn newton(&self, slope: &[f64]) -> Option<Vec<f64>> {
         let along = |vector: &[f64]| -> Vec<f64> {
             vector.iter().zip(slope).map(|(own, slope)| if *slope == 0.0 { 0.0 } else { *own }).collect()
@@ -151,7 +151,7 @@ fn is_falling(moved: &[f64], fall: &[f64]) -> bool {
     dot(moved, fall) > TUNING.no_curvature * (dot(moved, moved) * dot(fall, fall)).sqrt()
 }
 
-/// What a gradient promises on the way to a target.
+/// Gain that a gradient promises on the way to a target.
 fn gain(best: &Known, target: &[f64]) -> f64 {
     target.iter().zip(&best.point).zip(&best.slope).map(|((to, x), slope)| slope * (to - x)).sum()
 }

@@ -7,12 +7,12 @@ use super::{AttainedSearch, FollowedRow, best, by_end};
 use crate::methods::{Followed, Sensitivity};
 use crate::numerics::Range;
 
-/// What climbs left open at an end, or at both ends of an output in a row.
+/// Uncertainty that climbs left at an end, or at both ends of an output in a row.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Open {
-    /// Gradients there still promise so much.
+    /// Gain that gradients there still promise.
     pub promise: f64,
-    /// Second best climbs stayed so far behind the best.
+    /// Distance by which second best climbs stayed behind the best.
     pub gap: f64,
 }
 
@@ -50,7 +50,7 @@ pub(super) fn ends(
     known
 }
 
-/// What all climbs to one end left open.
+/// Uncertainty that all climbs to one end left.
 pub(super) fn open_of(search: &AttainedSearch<'_, '_>, of_end: &[Climb]) -> Open {
     let reached = search.best_sample(of_end[0].end).map_or(f64::INFINITY, |(value, _)| value);
     let known = of_end.iter().filter_map(|climb| climb.best.as_ref());

@@ -98,8 +98,8 @@ mod tests {
     }
 
     proptest! {
-        /// The conditions of Karush, Kuhn and Tucker: the gradient of the model vanishes along what lies within, and
-        /// points outwards at a side. B is that of a function whose Hessian is H = Σ n nᵀ.
+        /// The conditions of Karush, Kuhn and Tucker: the gradient of the model vanishes along axes on which the point
+        /// lies within the box, and points outwards at a side. B is that of a function whose Hessian is H = Σ n nᵀ.
         #[test]
         fn nothing_is_to_be_gained_from_the_point_that_is_found(
             normals in prop::collection::vec(prop::collection::vec(-3.0..3.0, 6), 1..5),

@@ -17,7 +17,7 @@ pub trait Slopes {
     fn slopes(&self, samples: &[Sample], wanted: &[Wanted]) -> Result<Option<Vec<Slope>>, SimulationError>;
 }
 
-/// Of outputs over time.
+/// Slopes of outputs over time.
 pub(super) struct OfRows<'s, 'm> {
     pub study: &'s Study<'m>,
     pub schedule: &'s Schedule,
@@ -28,7 +28,7 @@ impl Slopes for OfRows<'_, '_> {
         let Self { study, schedule } = self;
         match gradients(&study.simulator, schedule, samples, wanted, study.interruption) {
             Err(NoGradient::Simulation(SimulationError::Interrupted)) => Err(SimulationError::Interrupted),
-            // Some corner cannot be assembled: the ends so far are kept.
+            // Some corner cannot be assembled: the ends so far remain.
             Err(_) => Ok(None),
             Ok(found) => Ok(Some(found.into_iter().map(|own| (own.value, own.by_parameters)).collect())),
         }

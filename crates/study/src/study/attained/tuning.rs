@@ -19,20 +19,20 @@ tuning! {
         cost_of_gradient: usize = 4, moves "bounds of models with many parameters";
         /// Work for each simulation of the budget: gradients count in full, and most of them are of shorter motions.
         work_of_budget: usize = 4, moves "bounds of models with many parameters";
-        /// Fewest points of polynomials beside the middle of the box: two more than the parameters.
+        /// Fewest points of polynomials in addition to the middle of the box: two more than the parameters.
         least_points: usize = 16, moves "bounds of models with many parameters";
-        /// Most points of polynomials beside the middle of the box: two more than the parameters.
+        /// Most points of polynomials in addition to the middle of the box: two more than the parameters.
         most_points: usize = 32, moves "bounds of models with many parameters";
         /// Points of polynomials that are the surrogate of a run: with this many, the error that 100 parameters of a
         /// chain leave to statistics is a tenth of their spread.
         kept_points: usize = 64, moves "bounds of models with many parameters";
-        /// A step that promises less than this share of the output's range in the row is left out.
+        /// A step that promises less than this share of the output's range in the row is omitted.
         worth_of_step: f64 = 1e-3, moves "bounds of models with many parameters";
-        /// A step that promises less than this share of the error that is allowed is left out.
+        /// A step that promises less than this share of the error that is allowed is omitted.
         worth_of_allowed: f64 = 0.1, moves "bounds of models with many parameters";
         /// Pairs of points whose curvature counts.
         memory_of_curvature: usize = 8, moves "bounds of models with many parameters";
-        /// Cosine of the angle between a move and the change of the gradient below which it tells no curvature.
+        /// Cosine of the angle between a move and the change of the gradient below which they give no curvature.
         no_curvature: f64 = 1e-6, moves "bounds of models with many parameters";
         /// Share of a matrix's size below which a product with it is rounding.
         rounding_of_product: f64 = 1e-12, moves "bounds of models with many parameters";
