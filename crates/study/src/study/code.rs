@@ -25,8 +25,8 @@ pub enum CodeError {
 /// are parameters that may change during the motion, `version` is that of its unit of FMI.
 ///
 /// # Errors
-/// Where the model has no motion, or one that does not reach its end, where the runtime lacks what its steps take, and
-/// where an input cannot be one.
+/// If the model has no motion, or one that does not reach its end, if the runtime lacks a feature that its steps need,
+/// and if an input cannot be one.
 pub fn code(description: &Description, inputs: &[String], version: FmiVersion) -> Result<CModel, CodeError> {
     needs_mechanism(description, "source code").map_err(RunError::from)?;
     let pool = pool(None).map_err(RunError::from)?;

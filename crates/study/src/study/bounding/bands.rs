@@ -1,5 +1,5 @@
-//! Bands of an output, with their errors, and what says that they are wrong: values that the run has simulated, and one
-//! another.
+//! Bands of an output, with their errors, and evidence that they are wrong: values that the run has simulated, and
+//! other bands.
 
 use super::tuning::TUNING;
 use super::{Bounded, Outcome};
@@ -32,15 +32,16 @@ pub fn bands(study: &Study, bounded: &Bounded, output: usize, rows: usize) -> Ve
             let (direct, halved) = (validation.direct.at(row, output), validation.halved.at(row, output));
             let by_coordinates = outcome.result.steps[output][row];
             let by_samples = time_error(constant[row], &direct, &halved);
-            // Either is enough: what the validation samples near the ends show, if there are any, and what the
-            // coordinates' errors do to the ends, which is nothing where a range is saturated. (`min` passes over NaN.)
+            // Either estimate is enough: from the validation samples near the ends, if there are any, or from the
+            // effect of the coordinates' errors on the ends, which is nothing where a range is saturated. (`min` passes
+            // over NaN.)
             if by_coordinates.is_nan() || carries(constant[row], &direct[..halved.len()]) {
                 by_samples.min(by_coordinates)
             } else {
                 by_coordinates
             }
         };
-        // What halved steps have damped away too is added.
+        // Motion that halved steps have damped away too is added.
         let damped = |row: usize| -> f64 {
             bounded.doubts.damped.iter().map(|mode| mode.lost(output, bounded.plan.schedule.time(row))).sum()
         };
@@ -100,7 +101,7 @@ pub fn as_constants(bounded: &Bounded, output: usize, rows: usize) -> f64 {
     (0..rows).map(of_row).fold(0.0, f64::max)
 }
 
-/// Flags rows in which two methods exclude each other: one of them is wrong, and nothing tells which. Proven bands are
+/// Flags rows in which two methods exclude each other: one of them is wrong, and it is unknown which. Proven bands are
 /// not flagged.
 fn flag_exclusions(bands: &mut [Band]) {
     let rows = bands.first().map_or(0, |band| band.lower.len());

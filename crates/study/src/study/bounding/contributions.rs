@@ -34,7 +34,7 @@ pub fn contributions(study: &Study, bounded: &Bounded, rows: usize) -> Vec<Vec<C
     all
 }
 
-/// Contributions in a row beside excitations that are functions, to first order: a parameter, or a function, that moves
+/// Contributions in a row with excitations that are functions, to first order: a parameter, or a function, that moves
 /// an output by p either way has the share p²/Σp² of the variance, and p/Σp of the width.
 fn by_functions(study: &Study, functions: &FunctionEnds, row: usize, output: usize, own: &mut [Contribution]) {
     let parts = functions.parts(row, output);

@@ -11,7 +11,7 @@ pub struct Attained {
 }
 
 impl Attained {
-    /// Of `rows` rows and `outputs` outputs, of which nothing is known.
+    /// Ends of `rows` rows and `outputs` outputs, all unknown.
     pub fn new(rows: usize, outputs: usize) -> Self {
         Self { outputs, samples: Vec::new(), ends: vec![[None; 2]; rows * outputs] }
     }
@@ -45,7 +45,7 @@ impl Attained {
     }
 }
 
-/// The number of a sample among those that are kept, to which it is added where it is new.
+/// The number of a sample among those that are stored, to which it is added if it is new.
 fn number_of(kept: &mut Vec<Sample>, sample: &Sample) -> usize {
     kept.iter().position(|known| known == sample).unwrap_or_else(|| {
         kept.push(sample.clone());

@@ -1,4 +1,4 @@
-//! Ends of outputs over functions of the time: what a search found of excitations of which only limits are known.
+//! Ends of outputs over functions of the time: results of a search over excitations of which only limits are known.
 
 use std::sync::Arc;
 
@@ -9,7 +9,8 @@ use crate::numerics::{Cell, Range, Sample, largest};
 pub struct FunctionEnd {
     /// The output under the worst function found; NaN where none could be simulated.
     pub value: f64,
-    /// How much further the end may be: what the gradient at that function still promises, and what cells cost.
+    /// How much further the end may be: the gain that the gradient at that function still promises, and the error of
+    /// the cells.
     pub open: f64,
 }
 
@@ -22,13 +23,13 @@ pub struct WorstFunction {
     pub value: f64,
     /// The parameters.
     pub sample: Sample,
-    /// Of each input of the equations, its cells.
+    /// Cells of each input of the equations.
     pub cells: Vec<Vec<Cell>>,
     /// Times at which cells end, s.
     pub ends: Arc<[f64]>,
 }
 
-/// What a search over functions found.
+/// Result of a search over functions.
 #[derive(Clone, Debug)]
 pub struct FunctionEnds {
     outputs: usize,
@@ -45,12 +46,12 @@ pub struct FunctionEnds {
     parts: Vec<Vec<f64>>,
     /// The excitation that each input is, by index of its trajectory.
     pub inputs: Vec<usize>,
-    /// Of reduced outputs and margins, as outputs of one row, where there are any.
+    /// Ends of reduced outputs and margins, as outputs of one row, if there are any.
     pub of_values: Option<Box<Self>>,
 }
 
 impl FunctionEnds {
-    /// Of `rows` rows and `outputs` outputs, of which nothing is known.
+    /// Ends of `rows` rows and `outputs` outputs, all unknown.
     pub fn new(rows: usize, outputs: usize, inputs: Vec<usize>) -> Self {
         let unknown = FunctionEnd { value: f64::NAN, open: f64::NAN };
         let (ends, steps) = (vec![[unknown; 2]; rows * outputs], vec![None; rows * outputs]);
@@ -118,7 +119,7 @@ impl FunctionEnds {
     }
 
     /// Gives each row the largest of the steps' errors that are measured in it and in the rows next to it on both
-    /// sides: a difference that changes its sign says nothing where it is small.
+    /// sides: a difference that changes its sign gives no information where it is small.
     pub fn spread_steps(&mut self) {
         let rows = self.ends.len() / self.outputs.max(1);
         for output in 0..self.outputs {

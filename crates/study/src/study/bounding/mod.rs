@@ -1,8 +1,8 @@
 //! Methods, and the bands that each of them finds under one schedule: of outputs in every row, or of reduced outputs in
 //! one.
 //!
-//! `bands` adds the errors, `contributions` what each parameter adds to a band's width, and `ends` has the samples that
-//! attain them.
+//! `bands` adds the errors, `contributions` each parameter's part in a band's width, and `ends` has the samples that
+//! attain the bounds.
 
 mod bands;
 mod contributions;
@@ -102,7 +102,7 @@ impl Bounded {
         stops.map(|(stop, _)| stop.row).min().unwrap_or(self.plan.schedule.rows)
     }
 
-    /// What came of the samples of every method, and of the validation samples.
+    /// Outcomes of the samples of every method, and of the validation samples.
     fn simulated(&self) -> impl Iterator<Item = &Simulated> {
         let validation = self.validation.iter().map(|(validation, _)| &validation.simulated);
         self.outcomes().map(|outcome| &outcome.result.simulated).chain(validation)
@@ -141,7 +141,7 @@ impl Bounded {
     }
 }
 
-/// Notes the nominal motion where it is one of those that are bounded: a part of the box need not hold it.
+/// Notes the nominal motion if it is one of those that are bounded: a part of the box need not contain it.
 pub fn note_nominal(study: &Study, nominal: &MethodResult, seen: &Ledger) {
     if study.domain.contains(&study.domain.nominal) {
         let bands = nominal.bands.iter().enumerate();
@@ -150,8 +150,8 @@ pub fn note_nominal(study: &Study, nominal: &MethodResult, seen: &Ledger) {
     }
 }
 
-/// Bounds by every requested method that is wanted; those that were not begun at an interruption are left out, and
-/// of those that panic nothing is known.
+/// Bounds by every requested method that is wanted; methods that were not begun at an interruption are omitted, and the
+/// results of those that panic are unknown.
 pub fn bound(
     study: &Study,
     motions: &Motions,
@@ -163,7 +163,7 @@ pub fn bound(
     let mut outcomes = Vec::new();
     let mut asked: Vec<(Method, &dyn BoundingMethod)> =
         study.request.methods().into_iter().filter(|(method, _)| wanted(*method)).collect();
-    // What follows the response is held against what the others have simulated.
+    // Methods that follow the response are checked against the values that the others have simulated.
     asked.sort_by_key(|(_, request)| request.samples().is_none());
     for (method, request) in asked {
         if study.interruption.is_asked() {

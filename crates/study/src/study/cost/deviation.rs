@@ -14,7 +14,7 @@ pub(super) struct KnownBands {
     scales: Vec<f64>,
 }
 
-/// A distance relative to a scale: infinite where it is unknown, and zero where there is no scale.
+/// A distance relative to a scale: infinite if unknown, and zero without a scale.
 fn apart(distance: f64, scale: f64) -> f64 {
     let relative = distance / scale;
     match relative.is_nan() {
@@ -64,7 +64,7 @@ impl KnownBands {
         }
     }
 
-    /// Names of the outputs that are not looked at.
+    /// Names of the outputs that are not compared.
     pub(super) fn at_rest(&self) -> impl Iterator<Item = &str> {
         let outputs = self.outputs.iter().zip(&self.scales).filter(|(_, scale)| scale.is_nan());
         outputs.map(|(output, _)| output.name.as_str())

@@ -8,10 +8,10 @@ use crate::results::{CostMethod, Integrator};
 /// Levels of extrapolation that samples of bounds are tried with.
 pub(super) const LEVELS: Integrator = Integrator::Extrapolated { levels: 3 };
 
-/// Of which all samples lie in the true range: what a reference is checked by.
+/// The scan, all of whose samples lie in the true range: checks a reference.
 pub(super) const SCAN: CostMethod = CostMethod::Bounds(Curve { method: Method::Scan, index: 0 });
 
-/// What a reference is made by: the expansion of coordinates or, where the model does not admit that, of outputs.
+/// The method of a reference: the expansion of coordinates or, if the model does not admit that, of outputs.
 pub(super) fn smoothest(composable: bool) -> CostMethod {
     CostMethod::Bounds(Curve { method: Method::Chebyshev, index: usize::from(!composable) })
 }
@@ -49,7 +49,7 @@ pub(super) fn steppings(simulation: &Simulation) -> Vec<Stepping> {
     steppings
 }
 
-/// The same for what integrates in place of plain steps.
+/// The same for an integrator in place of plain steps.
 pub(super) fn steppings_by(integrator: Integrator, simulation: &Simulation) -> Vec<Stepping> {
     match integrator {
         Integrator::Extrapolated { .. } => steppings(simulation),

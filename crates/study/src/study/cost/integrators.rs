@@ -13,7 +13,7 @@ use crate::results::{CostMethod, CostPoint, Integrator};
 use crate::simulate::{Interruption, Schedule, SimulationError, Simulator, Stepper, schedule_for_tolerance};
 use crate::study::{RunError, first_step, scheme as model_scheme};
 
-/// What integrates in place of plain steps.
+/// Integrators in place of plain steps.
 const INTEGRATORS: [Integrator; 4] =
     [Integrator::Extrapolated { levels: 2 }, LEVELS, Integrator::Extrapolated { levels: 4 }, Integrator::Explicit];
 

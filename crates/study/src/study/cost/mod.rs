@@ -1,4 +1,4 @@
-//! What accuracy costs in time: a work-precision study of one model.
+//! Computing time against accuracy: a work-precision study of one model.
 //!
 //! `grid` lists the settings; `plan` which reference can be had, and `reference` computes it with its own error; every
 //! setting is run as `batch::run` runs a model, against the clock (`timing`), and `deviation` says how far its bounds
@@ -35,9 +35,9 @@ pub struct CostOptions<'a> {
     pub budget: f64,
     /// Threads; all cores where absent.
     pub threads: Option<usize>,
-    /// Told now and then which fraction is done.
+    /// Called now and then with the fraction that is done.
     pub progress: &'a (dyn Fn(f64) + Sync),
-    /// Asked now and then whether to end; measurements made by then are kept.
+    /// Asked now and then whether to end; measurements made by then remain.
     pub interrupted: &'a (dyn Fn() -> bool + Sync),
 }
 
@@ -143,7 +143,7 @@ pub fn cost(model: &Description, options: &CostOptions) -> Result<CostStudy, Cos
     })
 }
 
-/// What cannot integrate the motion at all, with the reason.
+/// Integrators that cannot integrate the motion at all, with the reason.
 fn unfit(points: &[CostPoint]) -> impl Iterator<Item = String> {
     cost_curves(points).into_iter().filter(|method| method.integrator().is_some()).filter_map(|method| {
         let mut own = points.iter().filter(|point| point.method == method);
@@ -183,9 +183,9 @@ fn beyond_budget(method: CostMethod, count: usize, options: &CostOptions) -> Str
     format!("{}: {count} of its settings, which the budget of {} s does not allow", method.label(), options.budget)
 }
 
-/// Runs settings by rising work as long as the budget lasts: what a method's last run took on the clock tells what its
-/// next will, and the `rate` what its first will. A run that goes beyond it nevertheless is ended. The points are in
-/// the settings' order; also how many settings of which method were skipped.
+/// Runs settings by rising work as long as the budget lasts: the time of a method's last run predicts that of its next,
+/// and `rate` that of its first. A run that exceeds the budget nevertheless is ended. The points are in the settings'
+/// order; also the number of skipped settings by method.
 fn run_settings(
     model: &Description,
     settings: &[Setting],

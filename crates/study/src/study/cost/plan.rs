@@ -16,7 +16,7 @@ pub(super) struct ReferencePlan {
     pub(super) parts: f64,
     /// Points of the dense scan.
     pub(super) scan: Option<usize>,
-    /// What a run takes on the clock for each of a setting's work, s, about; 0 where it is not known.
+    /// Approximate time of a run for each unit of a setting's work, s; 0 if unknown.
     pub(super) rate: f64,
 }
 
@@ -57,13 +57,13 @@ impl ReferencePlan {
         }
 
         // Seconds on the clock are a constant, in which the model is compiled, and a rate times the simulations: by the
-        // method, and beside it, which takes as many simulations at every order.
+        // method, and the others, whose number is the same at every order.
         let trials = [setting(2, 0.5), setting(2, 1.0)];
         let [coarse, fine] = [spent(model, &trials[0], options)?, spent(model, &trials[1], options)?];
         let rate = ((fine.seconds - coarse.seconds) / (fine.work - coarse.work)).max(0.0);
         let rate = if rate.is_finite() { rate } else { 0.0 };
         let constant = (fine.seconds - rate * fine.work).max(0.0);
-        // What a range takes to be found grows with the samples of its polynomial, whatever the steps.
+        // The time to find a range grows with the samples of its polynomial, whatever the steps.
         let growth = if fine.seconds > TUNING.share_of_trial * options.budget || highest < 4 {
             0.0
         } else {
@@ -96,7 +96,7 @@ impl ReferencePlan {
         Ok(Self { method, order, parts, scan, rate })
     }
 
-    /// The order that tells how far the reference's is off, where it has one.
+    /// The order from which the reference's error is estimated, if there is one.
     pub(super) fn lower_order(&self) -> Option<usize> {
         (self.order > 1).then(|| self.order.saturating_sub(2).max(1))
     }

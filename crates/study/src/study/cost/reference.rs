@@ -1,5 +1,5 @@
-//! What errors are measured against: bounds of a high order, extrapolated over small steps and widened to what a dense
-//! scan reaches, with an estimate of their remaining error.
+//! The reference for errors: bounds of a high order, extrapolated over small steps and widened to the range of a dense
+//! scan, with an estimate of their remaining error.
 //!
 //! - *Steps.* Where no equation switches, every sample's steps are extrapolated, and B(h) is taken as it is. Else B(h),
 //!   B(2h), B(4h) of a scheme of second order extrapolate to (4 B(h) − B(2h))/3 and (4 B(2h) − B(4h))/3. The error of
@@ -20,7 +20,7 @@ use crate::model::{Description, Stepping};
 use crate::results::{Bounds, OutputBounds};
 use crate::results::{CostMethod, CostReference};
 
-/// Bounds and nominal courses that others are held against, and the estimates of their errors.
+/// Bounds and nominal courses with which others are compared, and the estimates of their errors.
 pub(super) struct Reference {
     pub(super) known: KnownBands,
     pub(super) summary: CostReference,

@@ -65,8 +65,8 @@ pub(super) fn timed(
     best_of(|| bounds(model, setting, options, progress), seconds)
 }
 
-/// What a run takes on the clock, s, and what for: simulations times steps of all that it simulates, of which so much
-/// beside the method.
+/// Time of a run, s, and its work: simulations times steps of all that it simulates; `beside` is the part outside the
+/// method.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Spent {
     pub(super) seconds: f64,
@@ -87,7 +87,7 @@ pub(super) fn spent(model: &Description, setting: &Setting, options: &CostOption
     Ok(Spent { seconds, work: all, beside: all - work(method(&summary, setting)) })
 }
 
-/// What the setting's method took; the nominal run stands before it.
+/// The setting's method in a summary; the nominal run, the first line, if the setting has none.
 pub(super) fn method<'s>(summary: &'s Summary, setting: &Setting) -> &'s MethodSummary {
     let of = |method: Method| summary.methods.iter().find(|line| line.method == method.name());
     setting.reported().and_then(of).unwrap_or(&summary.methods[0])

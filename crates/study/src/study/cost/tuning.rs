@@ -21,9 +21,9 @@ tuning! {
         reference_done: f64 = 0.3, moves "the progress bar";
         /// Share of the progress bar at which the bounds are done.
         bounds_done: f64 = 0.95, moves "the progress bar";
-        /// Share of the budget that is kept for the schemes on the nominal trajectory.
+        /// Share of the budget that is reserved for the schemes on the nominal trajectory.
         for_schemes: f64 = 0.2, moves "which settings a cost study runs";
-        /// Most time that is kept for the schemes on the nominal trajectory, s.
+        /// Most time that is reserved for the schemes on the nominal trajectory, s.
         most_for_schemes: f64 = 5.0, moves "which settings a cost study runs";
         /// Highest orders of the reference for one, two and three parameters.
         highest_orders: [usize; 3] = [32, 24, 10], moves "the reference of a cost study";
@@ -39,11 +39,11 @@ tuning! {
         /// scan too.
         dense_scans: [[usize; 3]; 3] = [[401, 201, 101], [61, 41, 21], [21, 13, 9]],
             moves "the reference of a cost study";
-        /// Points of a scan that tells what many samples take.
+        /// Points of a scan that measures the time of many samples.
         trial_scans: [usize; 3] = [64, 8, 4], moves "the reference of a cost study";
         /// The coarsest reference may take this share; with more, nothing would be left to compare with it.
         most_of_coarsest: f64 = 0.7, moves "the reference of a cost study";
-        /// What orders add is only measured where a short run takes less than this share.
+        /// The effect of orders is only measured if a short run takes less than this share.
         share_of_trial: f64 = 0.05, moves "the reference of a cost study";
         /// Share of the budget that the reference's surrogate may take.
         share_of_reference: f64 = 0.35, moves "the reference of a cost study";

@@ -30,7 +30,7 @@ struct Axis {
 #[derive(Clone, Debug)]
 pub struct Axes {
     all: Vec<Axis>,
-    /// Of the free ones: names, and ends of their ranges.
+    /// The free axes: names, and ends of their ranges.
     pub free: Vec<Free>,
     /// Tolerances that are chosen.
     pub widths: Vec<Width>,
@@ -115,7 +115,7 @@ impl Axes {
         point
     }
 
-    /// What the tolerances cost at a point, where grades have costs between them, too.
+    /// Cost of the tolerances at a point, interpolated between grades.
     pub fn cost(&self, point: &[f64]) -> f64 {
         self.widths.iter().zip(&point[self.free.len()..]).map(|(width, multiple)| width.cost(*multiple)).sum()
     }
@@ -245,7 +245,7 @@ impl Axes {
         model
     }
 
-    /// The model over all samples about points of a region; for statistics, with what laws have beyond tolerances.
+    /// The model over all samples about points of a region; for statistics, with the reach of laws beyond tolerances.
     pub fn over(&self, description: &Description, region: &[[f64; 2]], is_statistical: bool) -> Description {
         let mut model = description.clone();
         let widest = |side: usize| -> Vec<f64> {

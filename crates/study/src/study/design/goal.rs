@@ -41,8 +41,7 @@ impl Goal {
         if let Self::Cost(margin) = self { margin } else { 0.0 }
     }
 
-    /// What counts of a point that leaves these slacks: for a cost, they begin at the margin, and the cost follows with
-    /// the other sign.
+    /// Slacks of a point that count: for a cost, they are reduced by the margin, and the negative cost is appended.
     pub fn counted(self, axes: &Axes, point: &[f64], mut slacks: Vec<f64>) -> Vec<f64> {
         if let Self::Cost(margin) = self {
             slacks.iter_mut().for_each(|slack| *slack -= margin);

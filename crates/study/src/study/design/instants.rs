@@ -1,8 +1,8 @@
 //! Requirements at instants instead of over the time.
 //!
-//! The extreme of a motion over the time changes its place where nominal values change the motion's shape: over wide
-//! ranges it is no polynomial. Its value at an instant is one; the least of many instants is taken of their surrogates.
-//! What lies between them is found by the studies that confirm.
+//! The extreme of a motion over the time moves where nominal values change the motion's shape: over wide ranges it is
+//! no polynomial. Its value at an instant is one; the least of many instants is taken of their surrogates. Values
+//! between the instants are checked by the studies that confirm.
 
 use std::ops::Range;
 
@@ -11,7 +11,7 @@ use symdiff::Formula;
 use super::tuning::TUNING;
 use crate::model::{Analysis, Description, Requirement};
 
-/// The model with nothing but what its requirements are of.
+/// The model with only the elements that its requirements use.
 pub fn required(mut model: Description) -> Description {
     let requirements = &model.requirements;
     let is_named = |name: &str| {
@@ -44,7 +44,7 @@ pub fn at_instants(description: &Description) -> (Description, Vec<Range<usize>>
     (model, groups)
 }
 
-/// Output rows spread over the time of a requirement; `None` where it has none.
+/// Output rows spread over the time of a requirement; `None` if it has no time.
 fn instants(description: &Description, own: &Requirement) -> Option<Vec<f64>> {
     let has_time = matches!(description.analysis, Analysis::Motion | Analysis::Kinematics);
     let (from, to) = own.times.filter(|(from, to)| has_time && !own.of_results && from < to)?;

@@ -1,11 +1,11 @@
 //! Nominal values that are best with the tolerances about them.
 //!
 //! Every candidate has its tolerances (`axes`). One run over the ranges and the tolerances about them gives a surrogate
-//! of all margins (`surface`); on it, `worst` finds what the worst case of a candidate leaves, and `search` the local
-//! optima, in the order of `goal`. About each of these a surrogate over a narrower region makes the optimum sharper
-//! (`refine`), and a study of its own tells its figures (`points`). The same without tolerances finds the optimum that
-//! one would have chosen otherwise. Where the cost is the objective, tolerances belong to the point (`width`, `price`);
-//! they are those that allocation finds (`allocated`), and `front` has cost against margin.
+//! of all margins (`surface`); on it, `worst` finds the least margins of a candidate in the worst case, and `search`
+//! the local optima, in the order of `goal`. About each of these a surrogate over a narrower region makes the optimum
+//! sharper (`refine`), and a study of its own determines its figures (`points`). The same without tolerances finds the
+//! optimum that one would have chosen otherwise. If the cost is the objective, tolerances belong to the point (`width`,
+//! `price`); they are those that allocation finds (`allocated`), and `front` has cost against margin.
 
 mod allocated;
 mod axes;
@@ -64,11 +64,11 @@ pub enum DesignError {
 /// Question to a model: its requirements, of which the objective's may be the last.
 #[derive(Clone)]
 struct Question {
-    /// As it is asked, without what its results do not need.
+    /// The requested model, without the parts that its results do not need.
     shown: Description,
     /// With outputs for its requirements.
     model: Description,
-    /// The same with requirements at instants, of which surrogates are made; and which of these stand for each.
+    /// The same with requirements at instants, for the surrogates; and the indices of these for each requirement.
     at_instants: Description,
     instants: Vec<Range<usize>>,
     goal: Goal,
@@ -92,7 +92,7 @@ impl Question {
         Self { shown, model, at_instants, instants: self.instants.clone(), goal, share: None, ..*self }
     }
 
-    /// What counts of a candidate, on a surrogate.
+    /// Assessment of a candidate on a surrogate.
     fn assessed<'s>(&self, surface: &'s DesignSurface) -> Result<Box<dyn Assessed + 's>, DesignError> {
         let requirements: Box<dyn Assessed + 's> = match self.share.filter(|_| surface.axes.uncertain() > 0) {
             None => Box::new(WorstOfDesign::new(surface)),

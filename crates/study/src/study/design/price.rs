@@ -7,8 +7,7 @@ use super::width::Width;
 use super::worst::Assessed;
 use crate::numerics::{Linear, best_step};
 
-/// What counts where the cost is the objective: what requirements leave beyond a margin, then the cost with the other
-/// sign.
+/// Assessment with the cost as the objective: slacks of the requirements beyond a margin, then the negative cost.
 pub struct Priced<'s> {
     pub requirements: Box<dyn Assessed + 's>,
     pub axes: &'s Axes,

@@ -65,7 +65,7 @@ fn confirmed(
         let is_feasible = found.found.is_feasible;
         let left = question.assessed(&surface)?.slacks(&point);
         for (requirement, known) in found.margins.iter().enumerate().filter(|(_, known)| known.is_finite()) {
-            // What a rounded point misses is kept in reserve, too.
+            // The violation of a rounded point is held in reserve, too.
             let missed = (-known).max(0.0);
             surface.reserves[requirement] +=
                 surface.scales[requirement] * left[requirement] - known + TUNING.reserved * missed;

@@ -55,7 +55,7 @@ fn starts(surface: &DesignSurface, goal: Goal, known: &[Vec<f64>]) -> Vec<Vec<f6
     let in_region = |shares: &Vec<f64>| -> Vec<f64> {
         shares.iter().zip(&surface.region).map(|(share, [lower, upper])| lower + share * (upper - lower)).collect()
     };
-    // A few cases tell which are worth it.
+    // A few cases show which are worth it.
     let cases: Vec<Vec<f64>> = corners(surface.axes.uncertain(), TUNING.corners_of_starts);
     let points: Vec<Vec<f64>> = spread.iter().map(in_region).collect();
     let samples: Vec<Vec<f64>> =
@@ -157,15 +157,15 @@ fn bent(assessed: &mut dyn Assessed, goal: Goal, point: &[f64], step: &[f64]) ->
     here[1].iter().zip(&there[1]).map(bent).collect()
 }
 
-/// The best of some points; the one given where there is none.
+/// The best of some points; `given` if there are none.
 pub fn best_of(assessed: &mut dyn Assessed, goal: Goal, points: Vec<Vec<f64>>, given: Vec<f64>) -> Vec<f64> {
     let own = |point: Vec<f64>| Optimum { merit: goal.merit(&assessed.slacks(&point)), point };
     let best = points.into_iter().map(own).min_by(|a, b| a.merit.order(&b.merit));
     best.map_or(given, |best| best.point)
 }
 
-/// What a violation has to count at least, so that no goal is worth it: by the changes of the goals and of the limit
-/// that is nearest over the region.
+/// Least weight of a violation at which no goal is worth it: by the changes of the goals and of the nearest limit over
+/// the region.
 fn price(surface: &DesignSurface, goals: &[Linear], limits: &[Linear]) -> f64 {
     let change = |own: &Linear| {
         let along = own.slopes.iter().zip(&surface.region);

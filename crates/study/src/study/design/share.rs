@@ -1,4 +1,4 @@
-//! What a share of the production leaves, as a function of the nominal values.
+//! Slacks that a share of the production leaves, as a function of the nominal values.
 
 use super::goal::Goal;
 use super::surface::DesignSurface;
@@ -9,7 +9,7 @@ use crate::numerics::statistics::{Mixture, weighted_quantile};
 use crate::study::allocate::tuning::TUNING as ALLOCATE;
 use crate::study::statistics::Laws;
 
-/// Of a share of the samples of the parameters' laws, which go with the nominal values.
+/// Slacks in a share of the samples of the parameters' laws, which move with the nominal values.
 pub struct Yield<'s> {
     surface: &'s DesignSurface,
     goal: Goal,
@@ -21,7 +21,7 @@ pub struct Yield<'s> {
 }
 
 impl<'s> Yield<'s> {
-    /// Of these laws about a point.
+    /// The yield under these laws about a point.
     pub fn new(surface: &'s DesignSurface, goal: Goal, laws: &Laws, from: &[f64], share: f64) -> Self {
         let (points, weights) = Mixture::default().replicate(0, laws.dimension(), TUNING.samples_of_share);
         let values = points.iter().map(|scores| laws.of_scores(scores)).collect();
@@ -37,7 +37,7 @@ impl<'s> Yield<'s> {
         }
     }
 
-    /// What each sample leaves of the requirements of a group, about a point.
+    /// Least slack of a group of requirements for each sample, about a point.
     fn least(&self, point: &[f64], group: &[usize], samples: &[usize]) -> Vec<f64> {
         let moved: Vec<Vec<f64>> =
             samples.iter().map(|&own| self.surface.axes.moved(&self.values[own], &self.from, point)).collect();

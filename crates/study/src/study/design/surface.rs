@@ -75,7 +75,7 @@ impl DesignSurface {
         self.scales.len()
     }
 
-    /// What samples leave of each requirement, in shares of its limit, requirement by requirement.
+    /// Slacks of each requirement at samples, in shares of its limit, requirement by requirement.
     pub fn slacks(&self, samples: &[Vec<f64>]) -> Vec<f64> {
         let count = samples.len();
         let all = self.at_instants(samples);

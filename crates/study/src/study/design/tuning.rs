@@ -11,9 +11,9 @@ tuning! {
         rounded_parameters: usize = 5, moves "nominal values that are found";
         /// Error relative to an output's range that the surrogate aims at, where the model asks for none.
         tolerance: f64 = 1e-3, moves "nominal values that are found";
-        /// Shares of the largest margin without tolerances at which the cost is told.
+        /// Shares of the largest margin without tolerances at which the cost is reported.
         traded: [f64; 4] = [0.2, 0.4, 0.6, 0.8], moves "the list of costs beside margins";
-        /// Violations that differ by less are equal, and one of less is none: shares of limits.
+        /// Violations that differ by less are equal, and a smaller one is none: shares of limits.
         equal_violations: f64 = 1e-9, moves "nominal values that are found";
         /// Most instants of a requirement.
         instants: usize = 33, moves "nominal values that are found";
@@ -21,7 +21,7 @@ tuning! {
         reported: usize = 3, moves "the list of optima";
         /// How many times the model's tolerances are allocated, at most.
         widest: f64 = 3.0, moves "the list of optima";
-        /// Half of the region, as a share of the ranges, of the surrogate of which a quantile is told.
+        /// Half of the region, as a share of the ranges, of the surrogate that determines a quantile.
         region_of_quantile: f64 = 1e-3, moves "which margins count as missed";
         /// A margin that is missed by less is left.
         missed_margin: f64 = 1e-9, moves "which margins count as missed";
@@ -39,7 +39,7 @@ tuning! {
         moves: usize = 8, moves "nominal values that are found";
         /// An optimum nearer to the edge of a region than this share of it is on it.
         edge: f64 = 1e-3, moves "nominal values that are found";
-        /// Reserve of a requirement, in multiples of what a study has missed.
+        /// Reserve of a requirement, in multiples of the violation in a study.
         reserved: f64 = 1.2, moves "nominal values that are found";
         /// Studies that correct the surrogate, at most.
         corrections: usize = 4, moves "nominal values that are found";
@@ -47,7 +47,7 @@ tuning! {
         starts_a_parameter: usize = 16, moves "nominal values that are found";
         /// Most starts that are compared.
         most_starts: usize = 96, moves "nominal values that are found";
-        /// Starts that are followed, beside those that are known.
+        /// Starts that are followed, in addition to those that are known.
         followed_starts: usize = 4, moves "nominal values that are found";
         /// First trust region, in shares of the region.
         first_radius: f64 = 0.2, moves "nominal values that are found";
@@ -65,7 +65,7 @@ tuning! {
         narrower: f64 = 0.4, moves "nominal values that are found";
         /// The trust region when at last nothing may be missed, in multiples of the smallest.
         restored: f64 = 100.0, moves "nominal values that are found";
-        /// What a violation counts, in multiples of what a goal gains by it.
+        /// Weight of a violation, in multiples of the gain of a goal by it.
         price_of_violation: f64 = 5.0, moves "nominal values that are found";
         /// Steps that are tried again with the cases that they showed, before the trust region shrinks.
         tried_again: usize = 4, moves "nominal values that are found";

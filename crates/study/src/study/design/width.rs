@@ -21,7 +21,7 @@ enum Curve {
 }
 
 impl Width {
-    /// Of a tolerance whose cost depends on it.
+    /// The width of a tolerance whose cost depends on it; `None` if it is fixed or has no cost.
     pub fn of(item: &Item) -> Option<Self> {
         let curve = match &item.choice {
             Choice::Fixed | Choice::Together => return None,

@@ -1,15 +1,15 @@
-//! What the worst case leaves, as a function of the nominal values.
+//! Slacks in the worst case, as a function of the nominal values.
 
 use super::surface::DesignSurface;
 use super::tuning::TUNING;
 use crate::numerics::{ExtremeSearch, Extremes, Linear, best_step};
 
-/// What the samples that count leave of the requirements about a point.
+/// Slacks of the requirements about a point, over the samples that count.
 pub trait Assessed {
-    /// The least slack of each requirement, and what counts beside.
+    /// The least slack of each requirement, then further objectives.
     fn slacks(&mut self, point: &[f64]) -> Vec<f64>;
 
-    /// How many these are.
+    /// Number of slacks.
     fn count(&self) -> usize;
 
     /// Whether the last point showed a case that was not known: a step from the point before may be better now.
@@ -30,7 +30,7 @@ pub trait Assessed {
     }
 }
 
-/// Of every case within the tolerances.
+/// Slacks over every case within the tolerances.
 pub struct WorstOfDesign<'s> {
     surface: &'s DesignSurface,
     search: ExtremeSearch,
