@@ -3,7 +3,7 @@
 //!
 //! The box is cut into pieces, across the parameter that separates failing samples from others best, as long as
 //! held-out samples of a piece fail. Each piece whose samples do not is bounded as if it were the whole; a row's bounds
-//! are those of the pieces that reached it together, and what share of the box these are is said with them.
+//! are those of the pieces that reached it together, and are reported with the share of the box of these pieces.
 
 use std::fmt;
 
@@ -91,12 +91,12 @@ fn survey(study: &Study, first: SimulationError) -> Survey {
 /// A part of the box.
 struct Piece {
     domain: ParameterBox,
-    /// Of the whole box.
+    /// Share of the whole box.
     share: f64,
     found: Found,
 }
 
-/// What held-out samples say of a piece.
+/// Outcome of a piece's held-out samples.
 enum Found {
     /// All reach the end.
     Whole,
@@ -128,7 +128,7 @@ pub(super) fn run(study: &Study) -> Result<(Bounds, Summary), RunError> {
         }
     }
     match ran.is_empty() {
-        // There is nothing to be told but what the whole box' own run tells.
+        // There is nothing to report but the result of the whole box' own run.
         true => single::run(study).map(|ran| (ran.bounds, ran.summary)).map_err(|error| explained(study, error)),
         false => Ok(merged(study, &ran)),
     }
@@ -173,7 +173,7 @@ fn axis_to_cut(whole: &ParameterBox, piece: &ParameterBox, failing: &[Vec<f64>])
     uncertain.reduce(|a, b| if score(b) > score(a) { b } else { a })
 }
 
-/// Tries a piece's held-out samples.
+/// Simulates a piece's held-out samples.
 fn trial(study: &Study) -> Result<Found, RunError> {
     let points = validation(study.domain.dimension(), study.request.degree());
     let can = study.simulator.can_assemble(&study.domain.samples(&points));
@@ -204,7 +204,7 @@ fn merged(study: &Study, ran: &[(Ran, &Piece)]) -> (Bounds, Summary) {
     (bounds, summary)
 }
 
-/// What all pieces took.
+/// Cost of all pieces.
 fn summary(study: &Study, ran: &[(Ran, &Piece)], bounds: &Bounds) -> Summary {
     let mut summary = ran[0].0.summary.clone();
     ran[1..].iter().for_each(|(ran, _)| add_methods(&mut summary, &ran.summary.methods));

@@ -1,4 +1,4 @@
-//! What a drawing asks of a model: hidden outputs, by their indices in the list of all.
+//! Outputs that a drawing requests of a model: hidden, by their indices in the list of all.
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use symdiff::{Binary, Formula, math};
@@ -6,7 +6,7 @@ use symdiff::{Binary, Formula, math};
 use crate::grammar::Rotation;
 use crate::model::{Body, Description, Output};
 
-/// Outputs that are asked.
+/// Outputs that are requested.
 #[derive(Default)]
 pub(in crate::study) struct DrawingOutputs(pub Vec<Output>);
 
@@ -129,7 +129,7 @@ impl DrawingValues {
         }
     }
 
-    /// A body's angle against the ground about z, where it has no other orientation.
+    /// A body's angle relative to the ground about z, if it has no other orientation.
     pub fn angle(&self, body: &AskedBody) -> Option<f64> {
         match body.rotation {
             AskedRotation::None => Some(0.0),

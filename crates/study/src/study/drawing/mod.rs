@@ -1,6 +1,6 @@
 //! The assembled mechanism at its start, for a drawing: where bodies, points, joints and effects are.
 //!
-//! What a drawing needs is asked as outputs of the model, so that it comes through the same equations as all else.
+//! The data of a drawing are requested as outputs of the model, and so use the same equations as all else.
 
 pub(super) mod asked;
 mod solids;
@@ -57,8 +57,8 @@ pub(super) fn extent(numbers: impl Iterator<Item = f64>) -> [f64; 2] {
     [least - margin, most + margin]
 }
 
-/// Draws it with its ground from one place to another along x, m. `known`: its program for other questions, if there
-/// is one, whose start is taken.
+/// Draws it, with its ground between two positions along x, m. `known`: its program for other questions, if there is
+/// one, whose start is taken.
 pub(super) fn drawn(
     description: &Description,
     along: Option<[f64; 2]>,
@@ -182,7 +182,7 @@ impl Scene<'_> {
         self.frames[body].place(local)
     }
 
-    /// Where a joint is: the places of its points, or of the joints that it couples.
+    /// Where a joint is: positions of its points, or of the joints that it couples.
     fn joint(&mut self, index: usize) -> Vec<End> {
         let kind = &self.description.joints[index].kind;
         if let Some(between) = kind.between() {
@@ -225,7 +225,7 @@ impl Scene<'_> {
         elements
     }
 
-    /// The sum of what acts on every body.
+    /// The sum of the accelerations that act on every body.
     fn gravity(&self, directions: &[Option<AskedVector>]) -> Option<[f64; 3]> {
         let effects = self.description.effects.iter().zip(&directions[self.description.joints.len()..]);
         let everywhere = effects.filter(|(effect, _)| effect.kind.scope() == Scope::EveryBody);

@@ -1,4 +1,4 @@
-//! Solids in a drawing: shapes of bodies, surfaces that effects have, and what links of a robot look like.
+//! Solids in a drawing: shapes of bodies, surfaces of effects, and the appearance of links of a robot.
 
 use nalgebra::{UnitQuaternion, Vector3};
 

@@ -6,8 +6,8 @@ use crate::methods::DenseMotions;
 use crate::numerics::Sample;
 use crate::simulate::{Observed, Schedule, SimulationError, Steps, integrator};
 
-/// As [`Ensemble::dense_motions`](crate::methods::Ensemble::dense_motions): of explicit steps, which tell what lies
-/// inside them. None at an interruption.
+/// As [`Ensemble::dense_motions`](crate::methods::Ensemble::dense_motions): of explicit steps, which determine the
+/// motion inside them. None at an interruption.
 ///
 /// # Errors
 /// Where a sample cannot be assembled.

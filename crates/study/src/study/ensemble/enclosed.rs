@@ -9,7 +9,7 @@ use crate::methods::{EnclosedRow, EnclosureEnd, Lost, Proof};
 use crate::numerics::ParameterBox;
 use crate::simulate::{Certifier, Enclosure, EnclosureError, MotionEnclosure, MotionSpaces, Simulator};
 
-/// What prevents a proof.
+/// Reason that prevents a proof.
 pub(super) fn obstacle(simulator: &Simulator, proof: Proof) -> Option<String> {
     let system = &simulator.system;
     if system.analysis.visits() {
@@ -51,7 +51,7 @@ fn jump_with_the_motion(system: &System) -> Option<&'static str> {
     of(&[&system.inertia[..], &system.force].concat(), 0).or_else(|| of(&system.constraint, 2))
 }
 
-/// Why an enclosure ended, with the parameter of which the piece is too wide, where that can be told.
+/// Why an enclosure ended, with the parameter of which the piece is too wide, if it can be determined.
 fn lost(simulator: &Simulator, time: f64, why: EnclosureError, axis: Option<usize>) -> Lost {
     let parameters = &simulator.system.parameters;
     let help = match (why, axis.and_then(|axis| parameters.get(axis))) {

@@ -50,11 +50,11 @@ pub(super) struct Motions<'a> {
     simulator: &'a Simulator,
     domain: &'a ParameterBox,
     schedule: &'a Schedule,
-    /// Of the steps' local errors, where they are controlled.
+    /// Tolerance of the steps' local errors, if they are controlled.
     tolerance: Option<Controller>,
     progress: &'a Progress<'a>,
     interruption: Interruption<'a>,
-    /// Where outputs are reduced to one number: keeps what samples are reduced to.
+    /// Stores the values to which samples are reduced, if outputs are reduced to one number.
     store: Option<&'a Store>,
     channels: &'a [Channel],
     /// Notes all simulated values.
@@ -76,7 +76,7 @@ pub(super) struct Motions<'a> {
 }
 
 impl<'a> Motions<'a> {
-    /// Of a mechanism over a box.
+    /// Motions of a mechanism over a box.
     pub fn new(
         simulator: &'a Simulator,
         domain: &'a ParameterBox,
@@ -118,7 +118,7 @@ impl<'a> Motions<'a> {
         Self { channels, ..self }
     }
 
-    /// The same, which notes all simulated values, where there is a ledger for them.
+    /// The same, noting all simulated values if there is a ledger for them.
     pub fn noting(self, ledger: Option<&'a Ledger>) -> Self {
         Self { ledger, ..self }
     }
@@ -258,7 +258,7 @@ impl Ensemble for Motions<'_> {
     fn rounding(&self, output: usize) -> f64 {
         let system = &self.simulator.system;
         let duration = self.schedule.output_step * self.schedule.rows as f64;
-        // Accelerations are second differences over steps, and forces are what these do to all masses.
+        // Accelerations are second differences over steps, and forces are their products with all masses.
         let sizes = [system.length, system.mass_of_bodies, duration, self.schedule.first_step()];
         let dimension = system.outputs[output].dimension.filter(|own| *own != Dimension::NUMBER);
         let share = dimension.map_or(TUNING.number_at_rest, |own| TUNING.at_rest * own.size(sizes));

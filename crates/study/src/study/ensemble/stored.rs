@@ -108,8 +108,8 @@ impl Stored<'_> {
         Task { subsystem, schedule, tolerance: controller, observed, until, channels, scan, samples }
     }
 
-    /// Gives every task with its part, which is simulated where it is missing. Where the missing ones together take
-    /// long, all of them are deferred.
+    /// Gives every task with its part, which is simulated if it is missing. If the missing ones together take long, all
+    /// of them are deferred.
     fn each_part(
         &self,
         motions: &Motions,
@@ -227,7 +227,7 @@ fn deliver(
     Ok(())
 }
 
-/// What a task is expected to take on one core, s.
+/// Expected time of a task on one core, s.
 fn seconds_of(motions: &Motions, task: &Task) -> f64 {
     if motions.source.is_some() {
         return task.samples.len() as f64 * PRICE.answer_seconds;

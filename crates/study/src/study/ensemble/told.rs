@@ -1,4 +1,4 @@
-//! Findings of a run, as methods take them, and what methods observe, as a run takes it.
+//! Conversions between a run and its methods: findings of the run, and quantities that methods observe.
 
 use super::Motions;
 use crate::methods::{self, Effort, StopCause};

@@ -5,7 +5,7 @@ use symdiff::constants::tuning;
 tuning! {
     /// Simulations in blocks.
     "study: ensemble" {
-        /// Values of motions that are held at once, at most.
+        /// Most values of motions that are in memory at once.
         most_values: usize = 1 << 26, moves "memory of motions that are cut at events";
         /// Times for each step at which a motion is dense.
         times_a_step: usize = 8, moves "outputs between rows";
@@ -20,7 +20,7 @@ tuning! {
         /// A range that is narrower than this, relative to the model's size and the run's duration, is rounding:
         /// Newton's iteration ends at 1e-12 or so.
         at_rest: f64 = 1e-10, moves "which outputs count as constant";
-        /// Width below which the range of a number whose size nothing tells is rounding.
+        /// Width below which the range of a number of unknown size is rounding.
         number_at_rest: f64 = 1e-12, moves "which reduced outputs count as constant";
         /// Bytes that the values of a part come to, about.
         part_bytes: usize = 64 << 20, moves "files of stored simulations";

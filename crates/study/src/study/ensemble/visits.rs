@@ -28,7 +28,7 @@ pub fn visit(
     Ok(visit_watching(motions, samples, sampling, reduce)?.0)
 }
 
-/// Also tells which singular configurations the samples passed.
+/// Also returns the singular configurations that the samples passed.
 pub fn visit_watching(
     motions: &Motions,
     samples: &[Sample],

@@ -1,9 +1,9 @@
 //! A climb to an end of an output over functions of the time and over the box: to where its gradient points.
 //!
-//! Of an output that is linear in the functions the first step ends there: the worst function has the sign of the
-//! kernel, h(t, τ) = ∂y(t)/∂u(τ), and the end is ∫ b |h| dτ (Balakrishnan & Boyd, Syst. Control Lett. 19 (1992) 265).
-//! Else the kernel under that function is another one, and so is the function: u ← sign(Bᵀλ) until the end stops
-//! growing. A step that is worse is halved.
+//! If an output is linear in the functions, the first step ends there: the worst function has the sign of the kernel,
+//! h(t, τ) = ∂y(t)/∂u(τ), and the end is ∫ b |h| dτ (Balakrishnan & Boyd, Syst. Control Lett. 19 (1992) 265). Else the
+//! kernel under that function is another one, and so is the function: u ← sign(Bᵀλ) until the end stops growing. A step
+//! that is worse is halved.
 
 use super::motions::{ExcitedMotions, WeightedPoint, functional, in_row};
 use super::point::Point;
@@ -17,16 +17,16 @@ pub struct FunctionClimb {
     pub output: usize,
     /// 1 of the upper end, −1 of the lower.
     pub sign: f64,
-    /// The best point, the value there (upwards), and what gradients promise from there on.
+    /// The best point, the value there (upwards), and the gain that gradients promise from there on.
     pub best: Option<(Point, f64)>,
     pub promise: f64,
-    /// The same before halved steps have told that it is less.
+    /// The same before halved steps have reduced it.
     pub promised: f64,
-    /// The value at its start, upwards, and what the gradient promised there.
+    /// The value at its start, upwards, and the gain that the gradient promised there.
     first: Option<(f64, f64)>,
-    /// What each parameter, then each input had of that promise.
+    /// Part of each parameter, then of each input, in that promise.
     pub parts: Vec<f64>,
-    /// What cells cost at the best point.
+    /// Error of the cells at the best point.
     pub cells: f64,
     /// By how much starts from elsewhere have improved the end.
     pub improved: f64,
@@ -110,7 +110,7 @@ impl FunctionClimb {
         arrives
     }
 
-    /// Takes what a climb to the same end from elsewhere found, if that is better.
+    /// Takes the result of a climb to the same end from elsewhere, if it is better.
     pub fn learn(&mut self, other: Self) {
         let gain = other.reached() - self.reached();
         if gain > 0.0 {
@@ -180,7 +180,7 @@ impl FunctionClimb {
         if self.halvings <= TUNING.halvings {
             self.next = Some(next);
         } else {
-            // A part of the step that gains nothing bounds what the whole of it does, along its line.
+            // A part of the step that gains nothing bounds the gain of the whole step, along its line.
             self.promise *= 0.5_f64.powi(self.halvings - 1);
         }
     }
@@ -207,7 +207,7 @@ impl FunctionClimb {
     }
 }
 
-/// Where the secant of two derivatives is zero, and what a parabola gains there; of a parameter at `xi` with a
+/// The zero of the secant of two derivatives, and the gain of a parabola there; for a parameter at `xi` with a
 /// derivative `slope`, whose sign is another `beyond`.
 fn secant(xi: f64, slope: f64, beyond: Option<(f64, f64)>) -> Option<(f64, f64)> {
     let (other, by) = beyond.filter(|(other, by)| slope * by < 0.0 && (other - xi) * slope > 0.0)?;

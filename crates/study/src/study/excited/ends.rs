@@ -240,7 +240,7 @@ impl Search<'_, '_> {
         Ok(())
     }
 
-    /// Notes what climbs found, with what halved steps change there.
+    /// Notes the results of climbs, with the errors of the steps, measured by halved steps.
     fn note_measured(&mut self, climbs: &[FunctionClimb]) -> Result<(), SimulationError> {
         let known: Vec<&FunctionClimb> = climbs.iter().filter(|climb| climb.best.is_some()).collect();
         let point = |climb: &&'_ FunctionClimb| climb.best.as_ref().map(|(point, _)| point.clone());
@@ -259,7 +259,7 @@ impl Search<'_, '_> {
         Ok(())
     }
 
-    /// Notes what a climb found.
+    /// Notes the result of a climb.
     fn note(&mut self, climb: &FunctionClimb) {
         let FunctionClimb { row, output, sign, .. } = *climb;
         let Some((point, reached)) = &climb.best else { return };

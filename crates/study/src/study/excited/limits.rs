@@ -10,12 +10,12 @@ use crate::numerics::{Cell, FunctionClass, Sample};
 /// A model with values of its uncertain parameters.
 pub struct Limits<'d> {
     description: &'d Description,
-    /// Of all parameters.
+    /// Values of all parameters.
     values: Vec<f64>,
 }
 
 impl<'d> Limits<'d> {
-    /// Of a sample.
+    /// Limits for a sample.
     pub fn of(description: &'d Description, sample: &Sample) -> Self {
         let mut limits = Self { description, values: Vec::with_capacity(description.parameters.len()) };
         let mut uncertain = sample.iter();

@@ -31,7 +31,7 @@ pub struct ExcitedMotions<'s, 'm> {
     pub study: &'s Study<'m>,
     simulator: &'s Simulator,
     pub schedule: Schedule,
-    /// Of each input.
+    /// Excitation of each input.
     excitations: Vec<&'s Excitation>,
     /// Times at which cells end, s.
     pub ends: Arc<[f64]>,
@@ -40,7 +40,7 @@ pub struct ExcitedMotions<'s, 'm> {
 }
 
 impl<'s, 'm> ExcitedMotions<'s, 'm> {
-    /// With the steps of a schedule, which end where functions that are held may jump.
+    /// Motions with the steps of a schedule, which end where held functions may jump.
     pub fn new(study: &'s Study<'m>, simulator: &'s Simulator, schedule: &Schedule) -> Self {
         let trajectories = &study.description.trajectories;
         let of_input = |input: &crate::assemble::InputInfo| trajectories[input.trajectory].excitation();
@@ -71,7 +71,7 @@ impl<'s, 'm> ExcitedMotions<'s, 'm> {
         self.excitations.iter().any(|own| own.class.jumps())
     }
 
-    /// Whether there are uncertain parameters beside those that excitations are as constants.
+    /// Whether there are uncertain parameters in addition to those that represent excitations as constants.
     pub fn has_parameters(&self) -> bool {
         let of_excitations: Vec<String> =
             self.excitations.iter().flat_map(|own| own.deviation.names().map(|(name, _)| name.to_owned())).collect();

@@ -34,7 +34,7 @@ pub fn settle_switches(motions: &mut ExcitedMotions, found: &mut FunctionEnds) -
     Ok(())
 }
 
-/// A function with its switches between the ends of cells, and the end there; `None` where it is no further.
+/// A function with its switches between the ends of cells, and the end there; `None` if it is no further.
 fn settled(
     motions: &mut ExcitedMotions,
     own: &WorstFunction,

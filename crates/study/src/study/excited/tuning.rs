@@ -9,8 +9,8 @@ tuning! {
         halvings: i32 = 4, moves "ends over functions of time";
         /// Least gain of a step, as a share of the gain that the first one promised.
         worth_of_step: f64 = 1e-4, moves "ends over functions of time";
-        /// A simulation that ends this share of the promised change beside the end that its gradient promised is not
-        /// one of a linear output.
+        /// If the end of a simulation differs from that promised by its gradient by this share of the promised change,
+        /// the output is not linear.
         bent: f64 = 1e-3, moves "ends over functions of time";
         /// Outputs and rows whose kernels are in memory at once.
         kernels_at_once: usize = 128, moves "memory of searches over functions of time";

@@ -160,8 +160,8 @@ impl Values<'_, '_, '_> {
         rows.map(of_row).filter(|(value, _)| value.is_finite()).max_by(|a, b| a.0.total_cmp(&b.0))
     }
 
-    /// How far a value can go at most by the ends of its source in the rows with their errors, upwards by the sign.
-    /// `None` where these do not tell.
+    /// Furthest value by the ends of its source in the rows with their errors, upwards by the sign. `None` if these do
+    /// not determine it.
     fn limit(&self, value: &Value, sign: f64) -> Option<Limit> {
         let Value::Reduced(index) = value else { return None };
         let own = &self.motions.study.description.reduced[*index];
@@ -285,8 +285,8 @@ impl Values<'_, '_, '_> {
         let index = *index;
         // From the middle of all limits, with which climbs begin.
         found.note_parts(0, index, &climbs[0].climb.parts);
-        // A peak that is made small has kinks, at which halved steps tell nothing: of a linear output the gradient's
-        // whole promise holds.
+        // A peak that is made small has kinks, at which halved steps give no information: for a linear output the
+        // gradient's whole promise holds.
         let by_gradient = climb.promised.max(0.0) + climb.cells;
         let open = match self.limit(value, climb.sign) {
             Some(Limit { value, is_attained: true }) => (value - reached).max(0.0),

@@ -64,7 +64,7 @@ fn named(names: &[String]) -> String {
     format!("{}{more}", names[..names.len().min(TUNING.named)].join(", "))
 }
 
-/// What a step takes more with other choices.
+/// Additional instructions of a step with other choices.
 fn without(description: &Description, choices: Choices, step: usize, affordable: bool) -> Option<Saving> {
     let (_, prepared) = affordable.then(|| prepare(description, choices).ok())??;
     let other: usize = prepared.iter().map(|one| instructions(&one.simulator)).sum();
@@ -75,7 +75,7 @@ fn saving(without: usize, with: usize, each: Each) -> Saving {
     Saving { instructions: without as i64 - with as i64, each }
 }
 
-/// Samples that the methods ask for beside the nominal one; none where that depends on the response.
+/// Number of samples of the methods and the nominal one; `None` if it depends on the response.
 fn samples(description: &Description) -> Option<usize> {
     let methods = description.bounds.methods();
     let counts = methods.iter().map(|(_, method)| method.samples()).collect::<Option<Vec<f64>>>()?;
@@ -83,7 +83,7 @@ fn samples(description: &Description) -> Option<usize> {
     Some(1 + if deterministic { 0 } else { counts.into_iter().sum::<f64>() as usize })
 }
 
-/// Parts that move on their own, with what reaches them.
+/// Parts that move on their own, with the parameters that reach them.
 fn subsystems(description: &Description, prepared: &[Prepared]) -> Vec<Decision> {
     let uncertain = uncertain(description);
     let whole = samples(description);
@@ -203,7 +203,7 @@ fn numbers(prepared: &[Prepared], step: usize) -> Option<Decision> {
     })
 }
 
-/// Reactions, energies and what effects measure, which no output names.
+/// Reactions, energies and measures of effects that no output names.
 fn unasked(prepared: &[Prepared]) -> Option<Decision> {
     let (mut other, mut own) = (0, 0);
     for one in prepared {

@@ -30,7 +30,8 @@ outputs: { x: cart.x }
 simulation: { duration: 0.1, step: 1e-3, formulation: absolute }
 ";
 
-/// What every effect of the language adds to a small mechanism of the plane, in the order of `mbint explain --effects`.
+/// Cost that every effect of the language adds to a small mechanism of the plane, in the order of `mbint explain
+/// --effects`.
 ///
 /// # Errors
 /// Never, but for a defect of the examples.
@@ -115,7 +116,7 @@ mod tests {
         }
     }
 
-    /// An effect that is left out leaves nothing: no coordinate, no register, no instruction.
+    /// An omitted effect leaves nothing: no coordinate, no register, no instruction.
     #[test]
     fn what_is_left_out_leaves_nothing() {
         let bare = prepare_whole(&example(None)).unwrap();

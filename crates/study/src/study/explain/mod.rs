@@ -1,4 +1,4 @@
-//! `mbint explain`: what a model is compiled to.
+//! `mbint explain`: the program to which a model is compiled.
 
 mod decisions;
 mod effect_costs;
@@ -20,10 +20,10 @@ use effect_costs::effect_costs;
 pub use effect_costs::language_costs;
 use tuning::TUNING;
 
-/// What a model is compiled to, and why it is no more than that.
+/// The program to which a model is compiled, with the reasons for omissions.
 ///
 /// # Errors
-/// Where it cannot be built or assembled.
+/// If it cannot be built or assembled.
 pub fn explain(description: &Description) -> Result<Explanation, RunError> {
     needs_mechanism(description, "a list of what a step takes")?;
     let model = reduced::expanded(description);
@@ -72,7 +72,7 @@ fn formulation(description: &Description, simulator: &Simulator) -> String {
     format!("{} coordinates: {}{cut}", info.name(), info.why)
 }
 
-/// What one subsystem is compiled to.
+/// The program of one subsystem.
 fn of_simulator(model: &str, description: &Description, simulator: &Simulator) -> Explanation {
     let (system, program) = (&simulator.system, &simulator.program);
     let (nonzeros, factor_nonzeros) = program.nonzeros;
