@@ -4,10 +4,10 @@ use std::any::Any;
 use std::panic::{AssertUnwindSafe, PanicHookInfo, catch_unwind, set_hook, take_hook};
 use std::sync::Mutex;
 
-/// The last panic, with its place in the source, once [`record_panics`] was called.
+/// The last panic, with its location in the source, once [`record_panics`] was called.
 static LAST: Mutex<Option<String>> = Mutex::new(None);
 
-/// A panic, and what to do about it.
+/// A panic, and the remedy.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "internal error in {stage}: {message}; please report it at {}/issues, with this line, the model's files, the command and the \
@@ -18,7 +18,7 @@ static LAST: Mutex<Option<String>> = Mutex::new(None);
 pub struct InternalError {
     /// Computation that panicked.
     stage: String,
-    /// The panic's message, and where known its place in the source.
+    /// The panic's message, with its location in the source if known.
     message: String,
 }
 
@@ -41,7 +41,7 @@ pub fn record_panics() {
 /// # Errors
 /// For a panic.
 pub fn caught<T>(stage: &str, compute: impl FnOnce() -> T) -> Result<T, InternalError> {
-    // What a panic leaves half done is dropped with the closure, or is not looked at again.
+    // Values that a panic leaves half done are dropped with the closure, or not read again.
     catch_unwind(AssertUnwindSafe(compute)).map_err(|payload| {
         let message = last().take().unwrap_or_else(|| message_of(payload.as_ref()));
         InternalError { stage: stage.to_owned(), message: message.replace('\n', " ") }
@@ -49,7 +49,7 @@ pub fn caught<T>(stage: &str, compute: impl FnOnce() -> T) -> Result<T, Internal
 }
 
 fn last() -> std::sync::MutexGuard<'static, Option<String>> {
-    // A text is whole whatever panicked while the lock was held.
+    // A text is whole whatever panicked while the lock was taken.
     LAST.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
 }
 

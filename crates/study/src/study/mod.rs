@@ -1,16 +1,16 @@
-//! Runs what a model asks for, on all cores and in bounded memory.
+//! Runs the requests of a model, on all cores and in bounded memory.
 //!
 //! `subsystems` separates a model into parts that do not interact; each becomes a `problem`: compiled (`formulation`
 //! chooses the coordinates, `prepared` and `ready` go up to the start), with a box and methods. A `single` study of it
 //! chooses the steps (`stepping`) and has the requested methods bound (`bounding`) the [`Ensemble`] of its motions
 //! (`ensemble`), block by block of output rows, so that memory does not grow with samples × steps; `attained` searches
 //! ends along gradients, `reduced` bounds numbers of a motion and decides requirements, and `deterministic` is the case
-//! without uncertain parameters. `answers` makes bounds, a summary and kept surrogates of the findings. `feasible`
+//! without uncertain parameters. `answers` makes bounds, a summary and stored surrogates of the findings. `feasible`
 //! bounds the part of a box in which there is a motion, `cost` runs one model with many settings to find the cost of
-//! accuracy, `explain` lists what a model is compiled to, and `price` estimates a run. `drawing` and `motion` show the
-//! mechanism, `internal` confines a panic, `statistics` evaluates kept surrogates, and `allocate` searches tolerances.
-//! `fit` compares with measured values, `design` searches nominal values, and `verify` measures orders against
-//! manufactured motions.
+//! accuracy, `explain` lists the parts of a compiled model, and `price` estimates a run. `drawing` and `motion` show
+//! the mechanism, `internal` confines a panic, `statistics` evaluates stored surrogates, and `allocate` searches
+//! tolerances. `fit` compares with measured values, `design` searches nominal values, and `verify` measures orders
+//! against manufactured motions.
 //!
 //! A type has its methods in its own file; other files have functions that take it. So the imports of a file are
 //! all that it uses, and a test finds circles.
@@ -100,29 +100,29 @@ pub struct Options<'a> {
     pub certify_time: bool,
     /// Whether derivatives of the outputs at the nominal parameters are found too.
     pub derivatives: bool,
-    /// Whether the part of the box is left out in which the mechanism cannot be assembled, or does not move to the end.
+    /// Whether to omit the part of the box in which the mechanism cannot be assembled, or does not move to the end.
     pub skip_infeasible: bool,
-    /// Whether to run what takes long without being allowed by the model; where not, a run ends that takes much longer
-    /// than was estimated.
+    /// Whether to start a long run that the model does not allow; otherwise a run ends if it takes much longer than was
+    /// estimated.
     pub costly: bool,
-    /// Of a run that nobody has allowed to take long.
+    /// Time limit of a run that nobody has allowed to take long.
     pub allowance: Option<&'a Allowance>,
     /// Where simulations are stored, if they are.
     pub store: Option<&'a PartStore>,
-    /// Told, where simulations are stored, how many bytes they may take on the disk, before the first is made.
+    /// Called before the first stored simulation with the disk space that all of them may need, bytes.
     pub disk: &'a (dyn Fn(u64) + Sync),
-    /// Told now and then which fraction is done; 0 begins a new count, as for statistics after simulations.
+    /// Called now and then with the fraction that is done; 0 begins a new count, as for statistics after simulations.
     pub progress: &'a (dyn Fn(f64) + Sync),
     /// Called with the current activity, in a few words, whenever it changes.
     pub stage: &'a (dyn Fn(&str) + Sync),
-    /// Called with the index of a subsystem before it is run, and with `None` before what belongs to all of them.
+    /// Called with the index of a subsystem before it is run, and with `None` before the work for all of them.
     pub subsystem: &'a (dyn Fn(Option<usize>) + Sync),
-    /// Asked now and then whether to stop; methods that are done, and rows of those that are not, are kept.
+    /// Asked now and then whether to stop; methods that are done, and rows of those that are not, remain.
     pub interrupted: &'a (dyn Fn() -> bool + Sync),
 }
 
 impl Default for Options<'_> {
-    /// What the model asks for, on all cores, however long it takes: a question of a person sets `costly`.
+    /// The requests of the model, on all cores, without a limit of time: an interactive caller sets `costly`.
     fn default() -> Self {
         Self {
             methods: None,
@@ -171,9 +171,8 @@ pub enum RunError {
     Threads(#[from] rayon::ThreadPoolBuildError),
 }
 
-/// Runs every method asked for. A sample that stops early ends the bounds there that need it: the rows reached are
-/// returned, and the summary's `failure` says what happened. So it does where a method panics: the other methods'
-/// bounds are kept.
+/// Runs every method asked for. A sample that stops early ends the bounds that need it: the rows reached are returned,
+/// and the summary's `failure` gives the reason. The same holds if a method panics: the other methods' bounds remain.
 ///
 /// # Errors
 /// Where the mechanism cannot be built, assembled or stepped at all.
@@ -181,7 +180,7 @@ pub fn run(description: &Description, options: Options) -> Result<(Bounds, Summa
     let pool = pool(options.threads)?;
     let model = reduced::expanded(description);
     let allowance = Allowance::begin();
-    // Nothing tells how long a program takes.
+    // The time of a program is unknown.
     let is_limited = !options.costly && description.black_box.is_none();
     let interrupted = || (options.interrupted)() || (is_limited && allowance.is_spent());
     let options = Options { interrupted: &interrupted, allowance: Some(&allowance), ..options };
@@ -203,8 +202,8 @@ pub fn run(description: &Description, options: Options) -> Result<(Bounds, Summa
     Ok((bounds, summary))
 }
 
-/// The same, and keeps the surrogates, to be evaluated anywhere in the box. `None` where there is none over the whole
-/// box: with `skip_infeasible`, or where a subsystem's method ended at once.
+/// The same, and stores the surrogates, to be evaluated anywhere in the box. `None` if none covers the whole box: with
+/// `skip_infeasible`, or if a subsystem's method ended at once.
 ///
 /// # Errors
 /// As for [`run`].
@@ -217,7 +216,7 @@ pub fn run_keeping(description: &Description, options: Options) -> Result<(Bound
     Ok((bounds, summary, kept))
 }
 
-/// A compiled model: of what `run` simulates, all in one.
+/// Compiles all that `run` simulates into one model.
 ///
 /// # Errors
 /// As for [`run`].

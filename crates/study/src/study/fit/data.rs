@@ -30,9 +30,9 @@ pub struct NoiseBound {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{}{message}", Self::location(*.line, *.column))]
 pub struct DataError {
-    /// From 1; 0 where it is of the whole table.
+    /// From 1; 0 if the error is one of the whole table.
     pub line: usize,
-    /// Of the character with which the cell begins, from 1.
+    /// Column of the character with which the cell begins, from 1.
     pub column: usize,
     /// The error and the remedy.
     pub message: String,
@@ -58,7 +58,7 @@ pub struct Measurements {
     pub(super) values: Vec<Measured>,
 }
 
-/// What a column has.
+/// Quantity of a column.
 #[derive(Clone, Copy, PartialEq)]
 enum Quantity {
     Time,
@@ -97,7 +97,7 @@ impl Measurements {
     }
 
     /// The time between rows of which one is at each measured time: the model's, or the longest, in whole steps; `None`
-    /// where there is none, or rows would be too many.
+    /// if there is none, or if there would be too many rows.
     pub(super) fn row_step(&self, simulation: &Simulation) -> Option<f64> {
         let Simulation { duration, stepping, output_step, .. } = simulation;
         let times = || self.values.iter().map(|own| own.time).filter(|time| *time > 0.0 && time <= duration);
@@ -106,7 +106,7 @@ impl Measurements {
             return Some(*output_step);
         }
         let least = duration / TUNING.most_rows;
-        // Euclid's algorithm, up to a remainder that is rounding beside the least step.
+        // Euclid's algorithm, up to a remainder that is rounding relative to the least step.
         let common = |mut a: f64, mut b: f64| {
             while b > TUNING.rounded_time * least {
                 (a, b) = (b, (a - b * (a / b).round()).abs());
@@ -202,7 +202,7 @@ fn quantity(name: &str, description: &Description) -> Result<Quantity, String> {
     Err(format!("`{}` is no output of the model{help}", suggest::clip(name)))
 }
 
-/// One of a unit in SI, where it is of the column's dimension.
+/// Value of the unit in SI, if it has the column's dimension.
 fn of_unit(text: &str, quantity: Quantity, description: &Description) -> Result<f64, String> {
     let unit = Unit::parse(text).map_err(|error| error.message)?;
     let wanted = match quantity {

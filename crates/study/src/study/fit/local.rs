@@ -85,10 +85,11 @@ pub fn values(prior: &ParameterBox, xi: &[f64]) -> Vec<f64> {
 }
 
 impl Local {
-    /// Of the least degree that differs from the surrogate by less than the share `fine` of the noise, or the finest.
+    /// Polynomials of the least degree that differs from the surrogate by less than the share `fine` of the noise, or
+    /// the finest.
     ///
     /// # Errors
-    /// Where the outputs have no value within the frame.
+    /// If the outputs have no value within the frame.
     pub fn new(
         readings: &Readings,
         frame: &SkewAxes,
@@ -157,7 +158,7 @@ impl Local {
         Self { tubes, rows: (0..errors.len()).collect(), errors, basis }
     }
 
-    /// With the intervals of measured values: rows of which nothing is known are left out, the model's box is added.
+    /// Adds the intervals of measured values, without rows whose error is unknown, and the model's box.
     fn within(mut self, frame: &SkewAxes, own: &[f64], measurements: &Measurements) -> Self {
         let size = self.basis.len();
         let mut coefficients = Vec::new();

@@ -214,7 +214,7 @@ fn polished(
     Ok(best)
 }
 
-/// Values of measured rows at one point; NaN where the motion ends before, and between rows beside an impact.
+/// Values of measured rows at one point; NaN if the motion ends before, and between rows next to an impact.
 fn simulated(
     model: &Description,
     measurements: &Measurements,

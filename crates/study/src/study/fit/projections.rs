@@ -12,7 +12,7 @@ struct Raster {
     cells: Vec<bool>,
 }
 
-/// Of every pair of parameters, within the hull of ξ.
+/// Projections on every pair of parameters, within the hull of ξ.
 pub fn projections(frame: &SkewAxes, paving: &Paving, hull: &[[f64; 2]], prior: &ParameterBox) -> Vec<FitProjection> {
     let k = prior.dimension();
     let pairs = (0..k).flat_map(|first| (first + 1..k).map(move |second| [first, second]));

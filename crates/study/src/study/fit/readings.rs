@@ -31,7 +31,7 @@ pub struct Readings<'r> {
     kept: &'r Kept,
     evaluator: Evaluator<'r>,
     rows: Vec<Reading>,
-    /// Whether rows that are flagged tell nothing, though their error is known.
+    /// Whether rows that are flagged count as unknown, though their error is known.
     strict: bool,
 }
 
@@ -40,7 +40,8 @@ struct Reading {
     output: usize,
     /// `None` where the motion ends before.
     interpolation: Option<Interpolation>,
-    /// Interpolations from either side, of a model that switches: beside an impact they differ by more than the noise.
+    /// Interpolations from either side, for a model that switches: next to an impact they differ by more than the
+    /// noise.
     sides: Vec<Vec<(usize, f64)>>,
     noise: f64,
 }
@@ -49,7 +50,7 @@ struct Reading {
 pub struct ReadValues {
     /// By measured row, then sample.
     pub values: Vec<Vec<f64>>,
-    /// By measured row: the largest difference of interpolations in time; infinite beside an impact.
+    /// By measured row: the largest difference of interpolations in time; infinite next to an impact.
     pub interpolation: Vec<f64>,
 }
 
@@ -106,7 +107,7 @@ impl SurrogateRun {
 }
 
 impl Readings<'_> {
-    /// The same, where rows that are flagged tell nothing.
+    /// The same; with `strict`, rows that are flagged count as unknown.
     pub fn strict(self, strict: bool) -> Self {
         Self { strict, ..self }
     }

@@ -19,7 +19,7 @@ const LAST: PavingLimits = PavingLimits { undecided: 0.02, boxes: 1 << 18, numbe
 
 /// The end of the approach.
 pub struct FoundSet {
-    /// `None` where it is empty.
+    /// `None` if it is empty.
     pub set: Option<Set>,
     /// Simulations of narrower boxes.
     pub simulations: usize,
@@ -110,9 +110,9 @@ struct Approach<'a> {
     prior: &'a ParameterBox,
     options: &'a Options<'a>,
     first: &'a SurrogateRun,
-    /// Over a narrower box, where there is one.
+    /// The run over a narrower box, if there is one.
     narrower: Option<SurrogateRun>,
-    /// Whether rows that are flagged tell nothing.
+    /// Whether rows that are flagged count as unknown.
     strict: bool,
     frame: SkewAxes,
     runs: usize,
@@ -184,7 +184,7 @@ impl<'a> Approach<'a> {
         if (self.options.interrupted)() { Err(FitError::Interrupted) } else { Ok((local, paving)) }
     }
 
-    /// A run over a box, in place of the one before. Returns whether there is one.
+    /// Runs over a box, in place of the run before. Returns whether it has a surrogate.
     fn rerun(&mut self, domain: &ParameterBox) -> Result<bool, FitError> {
         match SurrogateRun::new(self.description, domain, self.finer, self.options) {
             Ok(run) => {

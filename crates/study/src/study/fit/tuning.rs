@@ -10,7 +10,7 @@ tuning! {
         most_rows: f64 = 5000.0, moves "parameters that are estimated";
         /// Times are whole multiples of a step up to this share of it.
         rounded_time: f64 = 1e-6, moves "parameters that are estimated";
-        /// Starts in the box, beside its middle.
+        /// Starts in the box, in addition to its middle.
         starts: usize = 8, moves "parameters that are estimated";
         /// Most steps from each start on a surrogate.
         steps: usize = 40, moves "parameters that are estimated";
@@ -75,7 +75,7 @@ tuning! {
         boxes_of_factor: usize = 4000, moves "rows that no parameters explain";
         /// Rows that are as bad as the worst at the best parameters, up to this share.
         as_bad: f64 = 0.05, moves "rows that no parameters explain";
-        /// Most rows that are left out, one at a time, to find those that nothing explains.
+        /// Most rows that are omitted, one at a time, to find rows that nothing explains.
         left_out_rows: usize = 6, moves "rows that no parameters explain";
     }
 }

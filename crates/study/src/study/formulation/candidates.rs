@@ -88,7 +88,7 @@ pub fn asked<T: Compiled>(questions: &Questions) -> Result<T, RunError> {
     }
 }
 
-/// A formulation in place of one that takes too many operations.
+/// The other formulation, in place of one that takes too many instructions.
 pub fn other_way<T: Compiled>(questions: &Questions, formulation: Formulation) -> Result<T, RunError> {
     let system = match assemble::build(&Questions { formulation, ..questions.clone() }) {
         Err(BuildError::NoJointCoordinates { .. }) => return Err(SimulationError::TooLong.into()),

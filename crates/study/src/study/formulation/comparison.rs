@@ -1,4 +1,4 @@
-//! By what two formulations of a mechanism, or two cuts of its loops, are compared.
+//! Criteria by which two formulations of a mechanism, or two cuts of its loops, are compared.
 
 use crate::simulate::Simulator;
 use crate::study::formulation::tuning::TUNING;

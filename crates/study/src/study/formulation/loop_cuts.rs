@@ -1,7 +1,7 @@
 //! Which joints close the loops of a mechanism in joint coordinates: those with which its steps are shortest.
 //!
 //! The number of instructions depends on the cut by a half and more, and is known only when a cut is compiled. From the
-//! cut of the shallowest trees one exchange after the other is compiled, and kept where it is shorter, until none is,
+//! cut of the shallowest trees one exchange after the other is compiled, and adopted if it is shorter, until none is,
 //! or the budget is used up.
 
 use std::collections::BTreeSet;

@@ -43,7 +43,7 @@ pub fn compiled(questions: &Questions) -> Result<Simulator, RunError> {
     }
 }
 
-/// Joint coordinates that are asked for, with the cut of the loops whose steps are shortest where it is left open.
+/// Joint coordinates that are asked for, with the cut of the loops whose steps are shortest if the cut is left open.
 fn in_shortest_cut(questions: &Questions, asked: Simulator) -> Result<Simulator, RunError> {
     if !questions.is_cut_open() || !asked.system.formulation.joint {
         return Ok(asked);
@@ -53,7 +53,8 @@ fn in_shortest_cut(questions: &Questions, asked: Simulator) -> Result<Simulator,
     Ok(chosen(shorter.unwrap_or(asked), why))
 }
 
-/// Without loops: joint coordinates first, whose length tells when absolute ones are given up.
+/// Formulation of a mechanism without loops: joint coordinates first; their length determines when absolute ones are
+/// given up.
 fn of_trees(questions: &Questions, absolute: System) -> Result<Simulator, RunError> {
     let joint = match Candidate::<Simulator>::in_joint_coordinates(questions, TUNING.operations, None)? {
         Candidate::Runs(joint) => joint,
@@ -95,7 +96,7 @@ fn of_loops(questions: &Questions, absolute: System) -> Result<Simulator, RunErr
     let start = assembled.nominal[assembled.start.layout.q.clone()].to_vec();
     let is_regular = assembled.mobility.singular_at_start.is_empty() && assembled.mobility.redundant.is_empty();
     let in_joint = |operations: usize| Candidate::in_joint_coordinates(questions, operations, Some(&start));
-    // Joint coordinates need the start alone; only where they take long, the absolute steps tell how long they may.
+    // Joint coordinates need the start alone; only if they take long, the length of absolute steps limits theirs.
     let (absolute, joint) =
         rayon::join(|| Simulator::of(assembled, scheme, first_step), || is_regular.then(|| in_joint(TUNING.soon)));
     let absolute = match absolute {

@@ -5,8 +5,8 @@ use symdiff::constants::tuning;
 tuning! {
     /// The choice of coordinates.
     "study: formulation" {
-        /// Largest difference of an output's starts, relative or in its SI unit, by which formulations start alike:
-        /// what closures leave.
+        /// Largest difference of an output's starts, relative or in its SI unit, by which formulations start alike: the
+        /// residual of closures.
         alike: f64 = 1e-6, moves "coordinates of mechanisms with loops";
         /// Instructions of steps that are compiled in search of a shorter cut: in some hundredths of a second.
         cut_instructions: usize = 20_000, moves "cuts of loops, and so the last digits";
@@ -31,7 +31,7 @@ tuning! {
         /// The same in joint coordinates where only the start is wanted: in a second or two.
         operations_of_check: usize = 1_000_000, moves "coordinates in which large models are checked";
         /// Length of a cut's equations, over that of the best so far, from which on it is not compiled: of 90 cuts of
-        /// the models beside this program all 7 that were shorter had equations that were no longer.
+        /// the models of this repository all 7 that were shorter had equations that were no longer.
         longer_equations: f64 = 1.1, moves "cuts of loops, and so the last digits";
         /// Longest step in which the nominal motion is searched for singular configurations where a tolerance chooses
         /// the steps, s.

@@ -101,7 +101,7 @@ impl InRows {
     }
 }
 
-/// A reduced output of outputs in rows at these times, s; `series` has an output's rows. `None` where it has no
+/// A reduced output of outputs in rows at these times, s; `series` has an output's rows. `None` if it has no
 /// derivatives.
 pub fn in_rows<'s>(
     own: &ReducedOutput,
@@ -119,8 +119,8 @@ pub fn accumulated_in_rows<'s>(channel: Channel, times: &'s [f64], series: &'s [
     accumulated(within, &|sign| Curve { times, values: series, output: channel.output, sign })
 }
 
-/// Something that is accumulated from one time to another; `None` where it has no derivatives: of a path, and of an
-/// instant that is not there.
+/// A quantity that is accumulated from one time to another; `None` if it has no derivatives: for a path, and for an
+/// instant that does not exist.
 fn accumulated<'a>(channel: Channel, curve: &impl Fn(f64) -> Curve<'a>) -> Option<InRows> {
     let Channel { accumulation, from, to, .. } = channel;
     let extreme = |sign: f64| {

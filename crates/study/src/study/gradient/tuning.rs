@@ -5,7 +5,7 @@ use symdiff::constants::tuning;
 tuning! {
     /// Derivatives of outputs over time.
     "study: gradient" {
-        /// Halvings of an interval in which a zero is looked for, and golden sections of one with an extreme.
+        /// Halvings of an interval that contains a zero, and golden sections of one that contains an extreme.
         halvings: usize = 60, moves "instants of extremes, within rounding";
         /// Simulations that a gradient of one output in one row costs in lanes. Forwards, the derivatives by one
         /// parameter of all outputs in all rows cost about one.

@@ -1,4 +1,4 @@
-//! A mechanism moved by hand: a point of a body is taken to a place, as near as the joints let it.
+//! A mechanism moved by hand: a point of a body is moved to a position, as near as the joints allow.
 
 use nalgebra::Vector3;
 
@@ -24,7 +24,7 @@ pub struct Held {
     pub pose: Vec<f64>,
     /// Points of all bodies in their frames, as [`Poses`](crate::results::Poses) has them.
     pub points: Vec<f64>,
-    /// The point that is held, m.
+    /// The point of the grip, m.
     pub at: [f64; 3],
     /// The largest residual of the constraints, SI.
     pub residual: f64,
@@ -69,8 +69,8 @@ impl<'m> Hand<'m> {
         self.now = self.reach.towards(&self.now, sample, &wanted);
     }
 
-    /// Moves a point of the mechanism, of this sample, to a place, m, or to the nearest place that the closure allows.
-    /// `None` where there is no such point.
+    /// Moves a point of the mechanism, of this sample, to a position, m, or to the nearest one that the closure allows.
+    /// `None` if there is no such point.
     pub fn drag(&mut self, grip: Grip, sample: &Sample, place: [f64; 3]) -> Option<Held> {
         let local = self.local(grip)?;
         let (posed, drawing) = (self.posed, self.drawing);
@@ -147,7 +147,7 @@ simulation: { duration: 1, step: 0.01 }
             let angle = 1.0 + 0.1 * f64::from(step);
             let [x, y] = [1.5 * angle.cos(), 1.5 * angle.sin()];
             let Held { at, pose, .. } = held(&mut hand, end, &sample, [x, y, 0.0]);
-            // The nearest place of a circle of radius 1.
+            // The nearest point of a circle of radius 1.
             let off = (at[0] - x / 1.5).hypot(at[1] - y / 1.5);
             assert!(off < 1e-6, "{angle}: {at:?}");
             let slider = at[0] + (4.0 - at[1] * at[1]).sqrt();

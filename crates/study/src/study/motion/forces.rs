@@ -1,4 +1,4 @@
-//! Forces of the nominal motion, for arrows: reactions of joints, and what effects apply at points.
+//! Forces of the nominal motion, for arrows: reactions of joints, and forces of effects at points.
 //!
 //! They come from a simulation of their own, so that the motion that is shown is not computed in another way because
 //! of them.
@@ -23,7 +23,7 @@ struct AskedForce {
 /// A simulation of the nominal motion, of which forces are asked.
 pub(super) struct SimulatedForces {
     asked: Vec<AskedForce>,
-    /// Of the rows, s.
+    /// Times of the rows, s.
     times: Vec<f64>,
     rows: Vec<DrawingValues>,
 }

@@ -1,7 +1,7 @@
 //! The motion of all bodies, for a report: nominal, at samples, and as polynomials in the parameters.
 //!
-//! Poses are outputs of the whole model like any other, asked in place of its own: the same equations and the same
-//! steps, and nothing of it is in the program of a run.
+//! Poses are outputs of the whole model like any other, requested in place of its own: the same equations and the same
+//! steps, and the program of a run contains none of it.
 
 mod by_hand;
 mod forces;
@@ -46,7 +46,7 @@ pub struct MotionOptions<'a> {
     pub interruption: Interruption<'a>,
     /// Whether motions are cut at events.
     pub between_events: bool,
-    /// The formulation that was chosen for the model, where it is known: [`Summary::chosen_formulation`].
+    /// The formulation that was chosen for the model, if known: [`Summary::chosen_formulation`].
     pub formulation: Option<&'a FormulationInfo>,
 }
 
@@ -63,10 +63,11 @@ impl<'a> MotionOptions<'a> {
     }
 }
 
-/// The motion of all bodies for a report, with those under the worst functions of excitations; or why there is none.
+/// The motion of all bodies for a report, with those under the worst functions of excitations; or the reason why there
+/// is none.
 ///
 /// # Errors
-/// Where the mechanism cannot be built, assembled or stepped, at an interruption, and where it panics.
+/// If the mechanism cannot be built, assembled or stepped, at an interruption, and if it panics.
 pub fn report_motion(
     description: &Description,
     worst: &[FunctionWitness],
@@ -96,7 +97,7 @@ fn motion(description: &Description, options: MotionOptions) -> Result<Motion, R
     })
 }
 
-/// A model that is asked for its bodies' poses in place of its outputs.
+/// A model with its bodies' poses in place of its outputs.
 pub(super) struct Posed<'a> {
     pub(super) rows: MotionRows<'a>,
     bodies: Vec<AskedBody>,
@@ -130,7 +131,7 @@ impl<'a> Posed<'a> {
         })
     }
 
-    /// The drawing, with its ground from one place to another along x, m.
+    /// The drawing, with its ground between two positions along x, m.
     fn drawn(&self, description: &Description, along: Option<[f64; 2]>) -> Result<Drawing, RunError> {
         drawn(description, along, Some(&self.rows.simulator))
     }
@@ -162,7 +163,7 @@ impl<'a> Posed<'a> {
         let wanted: Vec<Sample> =
             [&self.rows.domain.nominal].into_iter().chain(&samples.shown).chain(&samples.nodes).cloned().collect();
         let poses = || {
-            // Its ground is drawn when it is known what the motion passes.
+            // Its ground is drawn once the range of the motion is known.
             let drawing = self.drawn(description, None)?;
             let (times, recorded) = self.record(description, &drawing, &wanted)?;
             Ok::<_, RunError>((drawing, times, recorded))
@@ -244,8 +245,8 @@ impl<'a> Posed<'a> {
         reach[1..].iter().flat_map(|&reach| of_body(reach)).collect()
     }
 
-    /// Times of the rows that are looked at, and the poses of every sample there. The nominal sample, the first,
-    /// reaches all of them.
+    /// Times of the rows that are examined, and the poses of every sample there. The nominal sample, the first, reaches
+    /// all of them.
     fn record(
         &self,
         description: &Description,
@@ -329,7 +330,7 @@ mod tests {
         .unwrap();
         let polynomials = motion.polynomials.as_ref().unwrap();
         assert_eq!((motion.samples.len(), motion.stopped, polynomials.degrees.len()), (12, 0, 30));
-        // Tolerances are half a percent: what a polynomial of degree four leaves is far below a micrometre.
+        // Tolerances are half a percent: the remainder of a polynomial of degree four is far below a micrometre.
         assert!(polynomials.error < 1e-7, "{}", polynomials.error);
         assert!(motion.between < 1e-3, "{}", motion.between);
         let several = super::motion(

@@ -10,7 +10,7 @@ use crate::results::{Drawing, Motion, Poses};
 use crate::simulate::Interruption;
 use crate::study::RunError;
 
-/// A compiled model whose bodies' poses are asked for, in place of its outputs.
+/// A compiled model with its bodies' poses in place of its outputs.
 pub struct Movable<'a> {
     description: &'a Description,
     posed: Posed<'a>,

@@ -37,7 +37,7 @@ impl Reached {
 /// Searches of a mechanism, with the closures that they needed.
 pub(super) struct Reach<'s> {
     simulator: &'s Simulator,
-    /// By independent coordinates; `None` where there is no such closure.
+    /// By independent coordinates; `None` if there is no such closure.
     closures: HashMap<Vec<usize>, Option<Closure<'s>>>,
 }
 
@@ -48,7 +48,7 @@ struct Candidate {
 }
 
 impl<'s> Reach<'s> {
-    /// Of a mechanism at the start of its time.
+    /// The reach of a mechanism at the start of its time.
     pub fn new(simulator: &'s Simulator) -> Self {
         Self { simulator, closures: HashMap::new() }
     }

@@ -16,7 +16,7 @@ use crate::simulate::{
     Simulator, Steps, TimeFunctions, integrator, schedule_for_tolerance, segments_of,
 };
 
-/// A model that is asked for something in place of its outputs.
+/// A model with other outputs in place of its own.
 pub(in crate::study) struct MotionRows<'a> {
     pub(in crate::study) simulator: Simulator,
     pub(super) domain: ParameterBox,
@@ -41,11 +41,11 @@ struct Running<'a> {
     /// Places of the samples among those that are wanted.
     running: &'a [usize],
     samples: &'a [Sample],
-    /// Numbers of a sample that are kept of a row.
+    /// Numbers of a sample that are stored of a row.
     numbers: usize,
 }
 
-/// Interval of the rows that are looked at, for `numbers` numbers in all rows.
+/// Interval of the rows that are examined, for `numbers` numbers in all rows.
 fn every(numbers: usize) -> usize {
     numbers.div_ceil(TUNING.most_numbers).max(1)
 }
@@ -81,7 +81,7 @@ impl<'a> MotionRows<'a> {
     }
 
     /// Simulates samples. `keep` receives the sample, whether it is its first row, and the values. The nominal sample,
-    /// the first, reaches all rows; of a sample `numbers` are kept of a row.
+    /// the first, reaches all rows; `numbers` numbers of a sample are stored of a row.
     pub(super) fn of_samples(
         &self,
         description: &Description,

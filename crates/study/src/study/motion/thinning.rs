@@ -4,13 +4,13 @@ use std::collections::BinaryHeap;
 
 /// Rows × lines of one or more samples, by which rows are chosen.
 pub(super) struct Thinning<'v> {
-    /// Of each sample (row, line).
+    /// (row, line) of each sample.
     pub samples: Vec<&'v [f64]>,
-    /// What a line's deviation counts.
+    /// Weight of a line's deviation.
     pub weights: &'v [f64],
 }
 
-/// The rows between two that are kept, with the one that is furthest from the straight line.
+/// The rows between two selected ones, with the one that is furthest from the straight line.
 #[derive(PartialEq)]
 struct Gap {
     error: f64,
@@ -93,7 +93,7 @@ mod tests {
         let thinning = Thinning { samples: vec![&parabola], weights: &[2.0] };
         let (rows, error) = thinning.rows(&times, 5, 1e-9);
         assert_eq!(rows, [0, 25, 50, 75, 100]);
-        // 2·(h/2)² of a parabola between rows that are h = 25 apart; rows lie beside the middle.
+        // 2·(h/2)² of a parabola between rows that are h = 25 apart; rows lie next to the middle.
         assert_eq!(error, 2.0 * 12.0 * 13.0);
         assert_eq!(thinning.rows(&times[..1], 5, 0.0).0, [0]);
     }

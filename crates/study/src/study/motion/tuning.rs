@@ -13,8 +13,8 @@ tuning! {
         fewest_poses: usize = 24, moves "motions in reports";
         /// Most poses of a motion that is shown.
         most_poses: usize = 600, moves "motions in reports";
-        /// Numbers of two bytes that the motions of a report come to, about: with base64 it keeps below 2 MB beside
-        /// its plots.
+        /// Approximate number of two-byte numbers in the motions of a report: with base64 and its plots it stays below
+        /// 2 MB.
         report_size: usize = 300_000, moves "motions in reports";
         /// Most steps of a search for the configuration that is nearest to a wanted one.
         steps_of_search: usize = 25, moves "poses that are dragged";
@@ -32,7 +32,7 @@ tuning! {
         /// A search ends where a step improves the sum of squares by less than this share.
         settled: f64 = 1e-10, moves "poses that are dragged";
         /// Numbers that rows and samples may come to in memory; of a longer simulation every second, third … row is
-        /// looked at.
+        /// examined.
         most_numbers: usize = 1 << 24, moves "motions in reports";
         /// Error of a step between events, as a share of how far the motion has gone.
         event_error: f64 = 1e-8, moves "motions in reports";
@@ -40,7 +40,7 @@ tuning! {
         rows_between_events: usize = 2048, moves "motions in reports";
         /// Rows that are simulated at a time.
         rows_at_once: usize = 64, moves "time only";
-        /// Controlling samples of the steps beside the nominal one.
+        /// Controlling samples of the steps, in addition to the nominal one.
         controlling: usize = 8, moves "motions in reports";
         /// Corners of the box among the samples that are shown.
         corners: usize = 8, moves "motions in reports";

@@ -9,7 +9,7 @@ use crate::simulate::SimulationError;
 use crate::study::{RunError, pool};
 
 /// Adds the motions under the functions of a run to that of a report, at its times. One that cannot be simulated is
-/// left out.
+/// omitted.
 ///
 /// # Errors
 /// At an interruption, and where threads cannot be had.
