@@ -36,7 +36,7 @@ pub(super) struct Study<'a> {
     pub(super) source: Option<Arc<ProgramSource>>,
 }
 
-/// What a subsystem is to its bounding methods.
+/// Properties of a subsystem that its bounding methods need.
 pub(super) fn problem(description: &Description, simulator: &Simulator) -> Problem {
     let parameters = simulator.system.parameters.len();
     let visits = simulator.system.analysis.visits();
@@ -52,10 +52,10 @@ pub(super) fn problem(description: &Description, simulator: &Simulator) -> Probl
 }
 
 impl<'a> Study<'a> {
-    /// Of a subsystem that is compiled already.
+    /// The study of a subsystem that is compiled already.
     ///
     /// # Errors
-    /// Where a method cannot bound it.
+    /// If a method cannot bound it.
     pub(super) fn new(
         description: &'a Description,
         simulator: Simulator,

@@ -34,8 +34,8 @@ impl Studied<'_> {
     }
 }
 
-/// Reduces and compiles a model, and fits the methods to its subsystems; where surrogates are kept, the method that has
-/// them. Every refusal comes before the first subsystem is run.
+/// Reduces and compiles a model, and fits the methods to its subsystems; with `keep`, the method that has surrogates.
+/// Every refusal comes before the first subsystem is run.
 ///
 /// # Errors
 /// Where a subsystem cannot be built, assembled or bounded; where the run takes long, and nobody has allowed it.
@@ -98,7 +98,7 @@ pub struct Ready {
     pub is_whole: bool,
     /// Parts that no output depends on.
     pub left_out: Vec<String>,
-    /// Of a run, where it asks before it begins.
+    /// Price of a run, if it has to be allowed before it begins.
     pub price: Option<Price>,
 }
 

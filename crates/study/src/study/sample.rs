@@ -27,7 +27,7 @@ pub struct ChosenSamples<'c> {
     pub at: &'c (dyn Fn(Range<usize>) -> Vec<Sample> + Sync),
 }
 
-/// What became of samples.
+/// Numbers of samples that are incomplete.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Sampled {
     /// Those that cannot be assembled.
@@ -46,7 +46,7 @@ pub struct Trajectories<'t> {
     pub(super) steps: &'t [StepPlan],
     progress: &'t Progress<'t>,
     chosen: ChosenSamples<'t>,
-    /// Of each subsystem.
+    /// Columns of each subsystem.
     pub(super) columns: Vec<Columns>,
     /// Names and units of the outputs.
     pub outputs: Vec<(String, String)>,

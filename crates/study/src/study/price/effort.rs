@@ -1,4 +1,4 @@
-//! What a step of one sample takes.
+//! Instructions of a step of one sample.
 
 use crate::simulate::Simulator;
 use crate::study::price::tuning::TUNING;

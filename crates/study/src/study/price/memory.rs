@@ -1,13 +1,13 @@
-//! How much memory a run's results take at least, and whether it is there: what would end in the middle is refused
-//! before it begins.
+//! Least memory of a run's results, and whether it is free: a run that would end in the middle is refused before it
+//! begins.
 
 use super::tuning::TUNING;
 use super::work::held_out;
 use crate::methods::Sensitivity;
 use crate::study::problem::Study;
 
-/// Of a number, of a range, and of the sensitivities of an output in a row, of which each has three lists of its own,
-/// bytes.
+/// Sizes of a number, of a range, and of the sensitivities of an output in a row, of which each has three lists of its
+/// own, bytes.
 const NUMBER: usize = size_of::<f64>();
 const RANGE: usize = 2 * NUMBER;
 const SENSITIVITIES: usize = size_of::<Option<Sensitivity>>();

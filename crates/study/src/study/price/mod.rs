@@ -1,5 +1,5 @@
-//! What a run costs, before it is spent: `work` counts simulations, `effort` what each takes, `memory` what the results
-//! take, and `allowance` ends a run that takes much longer than was estimated.
+//! Cost of a run, before it is spent: `work` counts simulations, `effort` instructions of each, `memory` the size of
+//! the results, and `allowance` ends a run that takes much longer than was estimated.
 
 mod allowance;
 mod effort;
@@ -18,7 +18,7 @@ pub use effort::instructions_of_step;
 pub use memory::Memory;
 pub use work::{stored_bytes, total_work};
 
-/// What a run is expected to take.
+/// Expected cost of a run.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error(
     "{simulations:.0} simulations are asked for, which take {} or more on {threads} {}; `bounds: {{ tolerance: 1e-2 }}` \
@@ -35,7 +35,7 @@ pub struct Price {
 }
 
 impl Price {
-    /// What the methods' own numbers of samples come to; where a tolerance decides, the budget does.
+    /// Cost of the methods' own numbers of samples; of the budget, if a tolerance determines the number.
     pub(in crate::study) fn of(studies: &[Study]) -> Self {
         let threads = rayon::current_num_threads();
         let (mut simulations, mut seconds, mut at_most) = (0.0, 0.0, 0.0);

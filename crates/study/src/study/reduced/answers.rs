@@ -12,7 +12,7 @@ pub struct Parameters<'a> {
     pub domain: &'a ParameterBox,
 }
 
-/// Takes what subsystems found out of their summaries: all reduced outputs and requirements, in the model's order.
+/// Takes the results of subsystems out of their summaries: all reduced outputs and requirements, in the model's order.
 pub fn together<'s>(
     parameters: Parameters,
     ran: impl Iterator<Item = (&'s Subsystem, &'s mut Summary)>,

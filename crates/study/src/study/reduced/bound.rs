@@ -141,7 +141,7 @@ fn bound_by_functions(results: &mut Bounded, functions: &FunctionEnds) {
     results.functions = Some(functions.clone());
 }
 
-/// What each sampled method finds of all values.
+/// Bounds of all values by each sampled method.
 fn bounds_of(
     study: &Study,
     ensembles: Ensembles,
@@ -163,7 +163,7 @@ fn bounds_of(
     if request.methods().iter().all(|(method, _)| !method.about().is_sampled) {
         request.ask(Method::Chebyshev, &problem(study.description, &study.simulator));
     }
-    // Channels are to reduced outputs what coordinates are to outputs.
+    // Channels correspond to coordinates, reduced outputs to outputs.
     if let Some(chebyshev) = &mut request.chebyshev {
         chebyshev.expand = Expand::Coordinates;
     }

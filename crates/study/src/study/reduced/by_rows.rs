@@ -1,8 +1,8 @@
 //! A requirement over the time by the bounds of its slacks in the rows.
 //!
-//! The least slack over the time and the box is the same whichever comes first. Over the time first, it is one number a
-//! motion, with a kink over the box wherever it changes its place in time. Over the box first, it is the least of the
-//! lower bounds in the rows, which know no such kink; only what lies between rows is estimated.
+//! The least slack over the time and the box does not depend on which is taken first. Over the time first, it is one
+//! number a motion, with a kink over the box wherever its instant jumps. Over the box first, it is the least of the
+//! lower bounds in the rows, which have no such kink; only the slack between rows is estimated.
 
 use super::part::MarginPart;
 use super::tuning::TUNING;
@@ -11,7 +11,7 @@ use crate::results::Band;
 use crate::study::bounding::{Bounded, bands};
 use crate::study::problem::Study;
 
-/// Bounds of a requirement's margin from the rows; `None` where they do not say, or where a simulated sample with a
+/// Bounds of a requirement's margin from the rows; `None` if they do not determine it, or if a simulated sample with a
 /// margin of `simulated` contradicts them.
 pub fn by_rows(study: &Study, own: &Requirement, rows: &Bounded, simulated: f64) -> Option<MarginPart> {
     let (from, to) = own.times.filter(|(from, to)| from < to)?;

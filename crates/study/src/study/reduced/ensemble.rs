@@ -1,7 +1,8 @@
-//! Reduced outputs as an ensemble of one row, whose coordinates are the channels: what bounds outputs bounds these too.
+//! Reduced outputs as an ensemble of one row, whose coordinates are the channels: methods that bound outputs bound
+//! these too.
 //!
-//! The samples of rows are those of reduced outputs. What each is reduced to is kept, so that it is not simulated
-//! twice.
+//! The samples of rows are those of reduced outputs. The values to which each is reduced are stored, so that it is not
+//! simulated twice.
 
 use std::collections::BTreeMap;
 use std::ops::Range as Rows;
@@ -30,7 +31,7 @@ pub fn steps_of(schedule: &Schedule) -> StepCounts {
     (schedule.steps_before(schedule.rows - 1), schedule.longest_step().to_bits(), schedule.integration.steps())
 }
 
-/// What samples were reduced to.
+/// Values to which samples were reduced.
 #[derive(Debug)]
 pub struct Store {
     pub plan: Arc<ReductionPlan>,
@@ -43,12 +44,12 @@ fn bits(sample: &Sample) -> Vec<u64> {
 }
 
 impl Store {
-    /// Of nothing yet.
+    /// An empty store.
     pub fn new(plan: ReductionPlan) -> Self {
         Self { plan: Arc::new(plan), kept: Mutex::default() }
     }
 
-    /// Keeps what samples were reduced to, channel by channel, sample by sample.
+    /// Stores the values to which samples were reduced, channel by channel, sample by sample.
     pub fn keep(&self, steps: StepCounts, samples: &[Sample], values: &[f64]) {
         // Stored values are whole, whoever panicked.
         let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
@@ -60,7 +61,7 @@ impl Store {
         }
     }
 
-    /// What a sample was reduced to.
+    /// Values to which a sample was reduced.
     pub fn get(&self, steps: StepCounts, sample: &Sample) -> Option<Vec<f64>> {
         self.kept.lock().unwrap_or_else(PoisonError::into_inner).get(&(steps, bits(sample))).cloned()
     }

@@ -1,4 +1,4 @@
-//! What reduced outputs and requirements are of, as outputs of the model that are not shown.
+//! Arguments of reduced outputs and requirements, as outputs of the model that are not shown.
 
 use std::borrow::Cow;
 
@@ -41,8 +41,7 @@ fn output_of(outputs: &mut Vec<Output>, name: &str, formula: &Formula, of_result
     })
 }
 
-/// Results with the model's own outputs, and what its analysis adds: without those behind its own, of all those of the
-/// expanded model.
+/// Results for the model's own outputs, and for those that its analysis adds, out of those of the expanded model.
 pub fn shown(
     description: &Description,
     expanded: &Description,

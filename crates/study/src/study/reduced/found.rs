@@ -11,7 +11,7 @@ pub struct Found {
     pub requirements: Vec<RequirementSummary>,
     /// Cost besides the samples of the outputs.
     pub summary: Option<MethodSummary>,
-    /// Where surrogates are kept.
+    /// Stored surrogates, if requested.
     pub kept: Option<KeptReduced>,
 }
 

@@ -1,4 +1,4 @@
-//! What a study keeps of the bounds of reduced outputs and margins.
+//! The surrogates of reduced outputs and margins that a study stores.
 
 use std::sync::Arc;
 
@@ -10,7 +10,7 @@ use super::values::ChannelValues;
 use crate::methods::Method;
 use crate::numerics::{BandError, Sample, largest, step_error, surrogate_error};
 
-/// Surrogates kept of reduced outputs and margins, with the errors of their values.
+/// Stored surrogates of reduced outputs and margins, with the errors of their values.
 pub fn kept_reduced(
     study: &Study,
     results: &mut Bounded,

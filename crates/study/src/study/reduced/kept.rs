@@ -1,4 +1,4 @@
-//! Reduced outputs and margins as functions of the parameters, kept after the run.
+//! Reduced outputs and margins as functions of the parameters, stored after the run.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -16,7 +16,7 @@ use crate::numerics::{BandError, largest};
 pub struct KeptReduced {
     pub(super) surrogate: KeptSurrogate,
     pub(super) values: Arc<ChannelValues>,
-    /// Of the values.
+    /// Errors of the values.
     pub(super) errors: Vec<BandError>,
 }
 
@@ -51,7 +51,7 @@ impl KeptReduced {
         largest(self.values.parts(requirement).map(|part| self.errors[part].surrogate))
     }
 
-    /// What the steps leave of the errors of some values, at most.
+    /// Largest part of the steps in the errors of some values.
     pub(super) fn time_error(&self, values: Range<usize>) -> f64 {
         largest(values.map(|value| self.errors[value].time))
     }
@@ -81,7 +81,7 @@ impl KeptReduced {
         together(count, &chunks, samples.len())
     }
 
-    /// By what values follow from channels.
+    /// Closures that compute values from channels.
     pub(super) fn closures(&self) -> Vec<Box<dyn Closure + '_>> {
         let closure =
             |independent| Box::new(Composition { values: &self.values, independent }) as Box<dyn Closure + '_>;

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use super::kept::KeptReduced;
 
-/// What a subsystem kept, and the numbers of its parameters, reduced outputs and requirements in the model.
+/// Stored surrogates of a subsystem, and the numbers of its parameters, reduced outputs and requirements in the model.
 #[derive(Clone)]
 pub struct MarginsOfPart<'k> {
     pub kept: Cow<'k, KeptReduced>,
@@ -68,7 +68,7 @@ pub struct Margins<'k> {
 }
 
 impl<'k> Margins<'k> {
-    /// Of these parts; `None` where a requirement has none.
+    /// Margins of these parts; `None` if a requirement has none.
     pub fn of(parts: Vec<MarginsOfPart<'k>>) -> Option<Self> {
         let count = parts.iter().map(|part| part.requirements.len()).sum();
         let index = |requirement: usize| {

@@ -1,10 +1,9 @@
 //! Reduced outputs and requirements: bounds of one number a motion, and verdicts.
 //!
-//! `expand` makes outputs of their arguments; `plan` lists the accumulated quantities, `values` what follows from them;
-//! `ensemble` is what the methods see, and `bound` asks them; `verdicts` decides requirements, some of them `by_rows`
-//! (`found` has all of it); `answers` puts those of subsystems together; `keeping`, `kept` and `margins` evaluate them
-//! after the run; `refine` runs a model until all are decided. `simulated` has
-//! those of samples.
+//! `expand` makes outputs of their arguments; `plan` lists the accumulated quantities, `values` computes values from
+//! them; `ensemble` presents them to the methods, and `bound` runs these; `verdicts` decides requirements, some of them
+//! `by_rows` (`found` has all of it); `answers` puts those of subsystems together; `keeping`, `kept` and `margins`
+//! evaluate them after the run; `refine` runs a model until all are decided. `simulated` has those of samples.
 
 mod answers;
 mod bound;

@@ -27,7 +27,7 @@ use crate::results::ReducedSummary;
 pub struct InPart {
     /// s
     pub range: Range,
-    /// Of the polynomials, and of the steps, s.
+    /// Errors of the polynomials, and of the steps, s.
     pub surrogate: f64,
     pub time: f64,
     /// Share of the box that is this part, at least and at most.
@@ -35,7 +35,7 @@ pub struct InPart {
 }
 
 impl InPart {
-    /// A summary with these bounds by the method that expands; widened to what samples show.
+    /// A summary with these bounds by the method that expands; widened to the values of samples.
     pub fn bounding(self, mut summary: ReducedSummary, tolerance: Option<f64>, is_unreliable: bool) -> ReducedSummary {
         let seen =
             summary.worst.as_ref().map_or(EMPTY, |[least, most]| Range { lower: least.value, upper: most.value });
@@ -62,7 +62,7 @@ struct Instants<'a> {
     humps: &'a Humps,
     /// Whether motions are cut at events.
     is_cut: bool,
-    /// The parts; those of one word in the order in which the event is looked for, and without it last.
+    /// The parts; those of one word in the order in which the event is searched for, the part without it last.
     kinds: Vec<Kind>,
     /// Words whose motions end a segment with the event, and that segment: the instant is theirs, to rounding.
     ended: Vec<(usize, usize)>,
@@ -74,9 +74,9 @@ struct Instants<'a> {
 /// Samples with their events.
 #[derive(Default)]
 struct Found {
-    /// s; NaN where there is none.
+    /// s; NaN if the event does not occur.
     instants: Vec<f64>,
-    /// None of samples whose part cannot be told.
+    /// `None` for samples whose part cannot be determined.
     kinds: Vec<Option<Kind>>,
     /// Whether the instant is the end of a segment of the motion.
     ends: Vec<bool>,
@@ -87,11 +87,11 @@ struct Found {
 }
 
 /// Bounds of a value that is the instant of an event, over the part of the box in which it occurs, by motions and by
-/// such with halved steps. `None` where it is no instant, where all samples have it or none has, and where its parts
-/// cannot be told.
+/// motions with halved steps. `None` if it is no instant, if all samples have it or none has, and if its parts cannot
+/// be determined.
 ///
 /// # Errors
-/// Where a sample cannot be assembled.
+/// If a sample cannot be assembled.
 pub fn in_part(
     value: usize,
     values: [&ReducedEnsemble; 2],
@@ -115,7 +115,7 @@ pub fn in_part(
 }
 
 impl<'a> Instants<'a> {
-    /// `None` where the parts of these ξ cannot be told, or are too many.
+    /// `None` if the parts of these ξ cannot be determined, or are too many.
     fn new(
         values: &'a ReducedEnsemble<'a>,
         value: usize,
@@ -177,8 +177,9 @@ impl<'a> Instants<'a> {
         Ok(Some(found))
     }
 
-    /// The instant of a sample, its part and whether it ends a segment, given the word, when its segments end, and the
-    /// instant that channels tell. One at the end of the time in which the event is looked for has a kink there.
+    /// The instant of a sample, its part and whether it ends a segment, given the word, the ends of its segments, and
+    /// the instant according to the channels. An instant at the end of the time in which the event is searched for has
+    /// a kink there.
     fn event(
         &self,
         word: usize,

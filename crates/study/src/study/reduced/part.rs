@@ -1,6 +1,6 @@
 //! Bounds of a part of a requirement's margin.
 
-/// Bounds of a part of a margin. What decides is the margin beside its error, however little or much it moves.
+/// Bounds of a part of a margin. The margin compared with its error decides, however little or much it moves.
 pub struct MarginPart {
     pub lower: f64,
     pub error: f64,
@@ -12,7 +12,7 @@ pub struct MarginPart {
 }
 
 impl MarginPart {
-    /// What the margin may be with the error.
+    /// Least margin within the error.
     pub fn reached(&self) -> f64 {
         self.lower - self.error
     }

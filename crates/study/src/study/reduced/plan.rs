@@ -1,8 +1,8 @@
 //! Channels of a motion, and how reduced outputs follow from them.
 //!
-//! A maximum over the time has a kink over the box where it changes place. The time is therefore cut between the local
+//! A maximum over the time has a kink over the box where its instant jumps. The time is therefore cut between the local
 //! extremes of the nominal motion: the extreme in each window is a channel of its own, which the surrogate expands, and
-//! the maximum is the largest of the channels' polynomials, kinks included. So it is with events: the windows lie
+//! the maximum is the largest of the channels' polynomials, kinks included. The same holds for events: the windows lie
 //! around the humps in which they can occur.
 
 use std::sync::Arc;
@@ -35,7 +35,7 @@ struct Planner<'a> {
 }
 
 impl ReductionPlan {
-    /// Of a model whose formulas have their places among its outputs, given the nominal course of an output in rows at
+    /// The plan of a model whose formulas are among its outputs, given the nominal course of an output in rows at
     /// `times`.
     pub fn of(description: &Description, times: &[f64], nominal: &dyn Fn(usize) -> Vec<f64>) -> Self {
         let end = description.simulation.duration;
@@ -152,7 +152,7 @@ impl Planner<'_> {
         }
     }
 
-    /// What the margin is the least of.
+    /// Values whose least is the margin.
     fn margin(&mut self, description: &Description, own: &Requirement) -> Vec<Value> {
         let channels = match own.times {
             Some((from, to)) if from == to => self.windowed_at(&own.outputs, from),
@@ -182,7 +182,7 @@ impl Planner<'_> {
         let (low, high) = (0..rows.len())
             .map(value)
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
-        // A dip with the depth below the lower one of the humps beside it.
+        // A dip with its depth below the lower one of the humps next to it.
         let mut dips: Vec<(usize, f64)> = Vec::new();
         for index in 1..rows.len().saturating_sub(1) {
             if value(index) < value(index - 1) && value(index) <= value(index + 1) {

@@ -62,8 +62,8 @@ fn simulations(summary: &Summary) -> usize {
     summary.methods.iter().map(|method| method.simulations).sum()
 }
 
-/// A finer request: a higher order where the surrogate's error is the larger one, shorter steps where theirs is. `None`
-/// where neither can help: the errors are small beside the margin, which is itself on both sides of the limit.
+/// A finer request: a higher order if the surrogate's error is the larger one, shorter steps if theirs is. `None` if
+/// neither can help: the errors are small relative to the margin, which is itself on both sides of the limit.
 fn refined(model: &Description, own: &RequirementSummary, summary: &Summary) -> Option<Description> {
     let mut finer = model.clone();
     let by_steps = own.time > own.surrogate;

@@ -13,7 +13,7 @@ use crate::study::ensemble::Motions;
 use crate::study::gradient::accumulated_in_rows;
 use crate::study::problem::Study;
 
-/// Of values, which are the outputs of one row.
+/// Slopes of values, which are the outputs of one row.
 pub struct OfValues<'s, 'm> {
     pub study: &'s Study<'m>,
     pub motions: &'s Motions<'s>,
@@ -21,7 +21,7 @@ pub struct OfValues<'s, 'm> {
     pub schedule: &'s Schedule,
 }
 
-/// What a value is to first order: its derivatives by outputs in rows and by parameters.
+/// Linearisation of a value: its derivatives by outputs in rows and by parameters.
 struct Linear {
     value: f64,
     terms: Vec<Term>,
@@ -59,7 +59,7 @@ impl OfValues<'_, '_> {
         self.values.plan().sources().into_iter().any(|source| self.motions.jumps(source))
     }
 
-    /// Of every value that is wanted; NaN where it is unknown or has no derivatives.
+    /// Linearisation of every value that is wanted; NaN if it is unknown or has no derivatives.
     fn linear(&self, samples: &[Sample], wanted: &[Wanted]) -> Result<Vec<Linear>, SimulationError> {
         let (channels, _) = self.values.channels(samples, false).map_err(simulation_error)?;
         let plan = self.values.plan();

@@ -10,7 +10,7 @@ tuning! {
         much_further: f64 = 4.0, moves "bounds of reduced outputs";
         /// Factor by which the estimate of a dip between rows may be wrong.
         safety_of_dip: f64 = 2.0, moves "verdicts of requirements over time";
-        /// Most numbers of reduced outputs that are kept, so that motions are not simulated twice.
+        /// Most numbers of reduced outputs that are stored, so that motions are not simulated twice.
         most_kept: usize = 1 << 24, moves "memory of reduced outputs";
         /// Samples evaluated by one thread at once. Fixed, so that results do not depend on the number of threads.
         samples_at_once: usize = 512, moves "time only";
@@ -29,7 +29,7 @@ tuning! {
         rounding_of_margin: f64 = 1e-12, moves "verdicts of requirements";
         /// Words of motions, and humps in which an event occurs, at most.
         most_occurring_parts: usize = 6, moves "bounds of instants over a part of the box";
-        /// An instant is at the end of a segment, or of the time in which it is looked for, if it is so near, as a
+        /// An instant is at the end of a segment, or of the time in which it is searched for, if it is so near, as a
         /// share of the run.
         at_event: f64 = 1e-6, moves "bounds of instants over a part of the box";
         /// A hump grazes within rounding whose height is this share of how far heights range.

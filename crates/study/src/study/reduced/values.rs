@@ -54,7 +54,7 @@ pub(super) enum Value {
     TimeOf(Humps, f64),
     First(Humps),
     Last(Humps),
-    /// The same, from the beginning where there is none, unknown where it lasts to the end.
+    /// The last instant outside the band: the beginning if there is none, unknown if it lasts to the end.
     Settling(Humps, f64, f64),
     Overshoot {
         greatest: Vec<usize>,

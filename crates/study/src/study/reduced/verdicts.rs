@@ -121,8 +121,8 @@ fn part(study: &Study, values: &Evaluated, index: usize) -> MarginPart {
     }
 }
 
-/// The simulated sample with the least margin; where bounds do not tell that all hold, the neighbours of the best
-/// are tried too.
+/// The simulated sample with the least margin; if bounds do not show that all hold, the neighbours of the best are
+/// tried too.
 fn nearest(
     study: &Study,
     number: usize,
@@ -240,7 +240,7 @@ fn limit_lines(study: &Study, own: &Requirement) -> Vec<LimitLine> {
     own.limits.iter().filter(|limit| is_output(&limit.of)).map(line).collect()
 }
 
-/// What would decide a requirement.
+/// Advice on how to decide a requirement.
 fn decides(own: &Requirement, lower: f64, [surrogate, time]: [f64; 2], is_known: bool) -> String {
     if !is_known || !(surrogate + time).is_finite() {
         return "reliable bounds: a higher order, shorter steps, or `bounds: { tolerance: … }`".to_owned();
