@@ -1,4 +1,4 @@
-//! A mechanism as an engineer counts it: mobility, size, mass, and what moves it.
+//! A mechanism as an engineer counts it: mobility, size, mass, and loads.
 
 use std::collections::BTreeSet;
 
@@ -82,7 +82,7 @@ fn mobility(description: &Description, inventory: &Inventory, assembled: &Assemb
     }
 }
 
-/// x, y and z of the bodies' origins and points; of the ground what something refers to.
+/// x, y and z of the bodies' origins and points; on the ground only of points that an element refers to.
 fn places(description: &Description) -> impl Iterator<Item = Formula> {
     let axes: &[&str] = if description.space.spatial { &["x", "y", "z"] } else { &["x", "y"] };
     let mut names: Vec<String> = Vec::new();
@@ -118,7 +118,7 @@ fn used_points_of_ground(description: &Description) -> Vec<[Formula; 3]> {
     used.into_iter().map(|point| point.map_or_else(origin, |point| ground.points[point].position.clone())).collect()
 }
 
-/// Extents along the axes of places that follow one another.
+/// Extents along the axes of consecutive positions.
 fn extent(spatial: bool, coordinates: &[f64]) -> [f64; 3] {
     let axes = if spatial { 3 } else { 2 };
     std::array::from_fn(|axis| {

@@ -245,7 +245,7 @@ impl<'a> Whole<'a> {
         self.parameters.iter().enumerate().map(contribution).collect()
     }
 
-    /// Values of a subsystem's parameters among those of all, where it has them.
+    /// Values of all parameters: of a subsystem's parameters from `values`, of the rest from `others`.
     fn spread<T: Clone>(&self, subsystem: &Subsystem, values: &[T], others: &[T]) -> Vec<T> {
         let own = |number: usize| subsystem.parameters.iter().position(|&own| own == number);
         (0..self.parameters.len())

@@ -6,7 +6,7 @@ use symdiff::constants::{Constant, tuning};
 tuning! {
     /// Parts of a study.
     "study" {
-        /// Samples of the box that tell how much of it fails.
+        /// Samples of the box that determine how much of it fails.
         surveyed: usize = 1000, moves "bounds of boxes in part of which there is no motion";
         /// Most pieces that the box is cut into.
         most_pieces: usize = 32, moves "bounds of boxes in part of which there is no motion";

@@ -3,7 +3,7 @@
 use crate::model::Description;
 use crate::results::{Bounds, ContributionSummary, Summary};
 
-/// Of parameters with these names: those of each zone, by their indices.
+/// Members of each zone among parameters with these names, by their indices.
 pub(super) fn of_names<'n>(description: &Description, names: impl Iterator<Item = &'n str>) -> Vec<Vec<usize>> {
     if description.zones.is_empty() {
         return Vec::new();

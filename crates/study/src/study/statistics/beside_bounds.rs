@@ -1,5 +1,5 @@
-//! Statistics of simulated motions beside their bounds, where no surrogate is kept: worst cases, linear sums and root
-//! sum squares.
+//! Statistics of simulated motions in addition to their bounds, if no surrogate is stored: worst cases, linear sums and
+//! root sum squares.
 
 use super::intervals;
 use super::motions;

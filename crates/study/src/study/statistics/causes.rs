@@ -1,4 +1,4 @@
-//! What an output does by each of its causes, to first order: parameters, and zones of several of them.
+//! Effect of each cause on an output, to first order: parameters, and zones of several of them.
 
 use super::laws::Laws;
 use crate::model::{Zone, ZoneShape};

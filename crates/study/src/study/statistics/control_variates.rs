@@ -1,5 +1,5 @@
 //! Statistics of simulated products with a surrogate as control variate (J. M. Hammersley & D. C. Handscomb, Monte
-//! Carlo Methods, 1964, § 5.5): its own are known by as many samples as one likes, and products tell the rest.
+//! Carlo Methods, 1964, § 5.5): its own are known by any number of samples, and products determine the rest.
 //!
 //! With the mean μ(s) of the surrogate over the laws, μ(f) = μ(f − β s) + β μ(s), where β is the regression
 //! coefficient of the products' values on the surrogate's. The variance follows likewise from squares about the means.

@@ -118,7 +118,7 @@ impl Laws {
             .sum()
     }
 
-    /// At most so much lies outside of what samples are drawn from.
+    /// Largest probability outside the domain from which samples are drawn.
     pub fn left_out(&self) -> f64 {
         self.laws
             .iter()

@@ -1,5 +1,5 @@
-//! Statistics beside the bounds, from the surrogate that a run keeps: quantiles over time, mean, standard deviation,
-//! and the linearised tolerance stack. Under random excitations they are of simulated motions.
+//! Statistics in addition to the bounds, from the surrogate that a run stores: quantiles over time, mean, standard
+//! deviation, and the linearised tolerance stack. Under random excitations they are of simulated motions.
 
 mod beside_bounds;
 mod causes;
@@ -35,7 +35,7 @@ const INTERRUPTED: &str = "interrupted before statistics were done";
 /// # Errors
 /// As for any run. Where statistics alone fail, the summary says why.
 pub(super) fn run(description: &Description, shown: usize, options: &Options) -> Result<(Bounds, Summary), RunError> {
-    // Where no surrogate is kept, linear sums are of the derivatives.
+    // Without a stored surrogate, linear sums use the derivatives.
     let derivatives = options.derivatives || shown > 0;
     let asked = Options { methods: options.methods.clone(), derivatives, ..*options };
     // Random motions meet more events than polynomials between them follow: they are not cut.
@@ -63,15 +63,15 @@ pub(super) fn run(description: &Description, shown: usize, options: &Options) ->
     Ok((bounds, summary))
 }
 
-/// Whether a run kept surrogates of all reduced outputs and margins. Of motions that are cut at events, simulated
-/// motions have them else.
+/// Whether reduced outputs and margins need no simulated motions: motions are not cut at events, or a run stored
+/// surrogates of all of them.
 fn has_numbers(description: &Description, kept: &Kept) -> bool {
     let reduced = description.reduced.is_empty() || kept.reduced(description.reduced.len()).is_some();
     let margins = description.requirements.is_empty() || kept.margins().is_some();
     !kept.is_cut() || (reduced && margins)
 }
 
-/// Statistics of what a run kept; where a law reaches beyond the box, of a surrogate over a wider one.
+/// Statistics of the surrogates that a run stored; if a law reaches beyond the box, of a surrogate over a wider one.
 fn of_run(
     description: &Description,
     shown: usize,
@@ -140,7 +140,7 @@ fn follows(description: &Description, kept: &Kept, wider: &Kept) -> bool {
     wider.times().len() >= kept.times().len() && (0..description.outputs.len()).all(of_output)
 }
 
-/// The same without what a second run does not need to be told again.
+/// Options of a second run: the interruption alone.
 fn quiet<'a>(options: &Options<'a>) -> Options<'a> {
     Options { interrupted: options.interrupted, ..Options::default() }
 }

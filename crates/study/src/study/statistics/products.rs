@@ -1,4 +1,4 @@
-//! Simulations at samples of the laws: products, by which statistics are told if the surrogate is not within the
+//! Simulations at samples of the laws: products, which determine statistics if the surrogate is not within the
 //! tolerance. The largest difference over a box of many parameters is in corners that next to no product comes near.
 
 use symdiff::math;
@@ -33,11 +33,11 @@ pub(super) struct Products {
 }
 
 impl Products {
-    /// Of the first `outputs` outputs; `None` where the parameters are few and motions are not cut at events, a
+    /// Products of the first `outputs` outputs; `None` if the parameters are few and motions are not cut at events, a
     /// surrogate is within the tolerance, or samples cannot be simulated.
     ///
     /// # Errors
-    /// Where the model cannot be simulated.
+    /// If the model cannot be simulated.
     pub fn of(
         description: &Description,
         options: &Options,
@@ -85,7 +85,7 @@ impl Products {
         }))
     }
 
-    /// The share of a quantile, and pairs of those between which it lies but for what differs by more.
+    /// The share of a quantile, and pairs that enclose it except for products that differ by more than each ε.
     pub fn shares_around(&self, share: f64) -> impl Iterator<Item = f64> {
         let pairs = self.beyond.into_iter().flat_map(move |own| [(share - own).max(0.0), (share + own).min(1.0)]);
         std::iter::once(share).chain(pairs)
@@ -133,8 +133,8 @@ impl Products {
     }
 }
 
-/// Simulations of which none differing by more than ε tells the share that does to a part of the smallest share beyond
-/// these quantiles.
+/// Number of simulations: if none differs by more than ε, the share that does is known to a part of the smallest share
+/// beyond these quantiles.
 fn simulations(quantiles: &[f64]) -> usize {
     let tail = quantiles.iter().map(|share| share.min(1.0 - share)).fold(0.5, f64::min);
     let needed = -math::ln(DOUBT) / (TUNING.fine_share * tail);

@@ -42,7 +42,7 @@ pub(super) fn samples(laws: &Laws, seed: usize, count: usize) -> Vec<Vec<f64>> {
     (0..count).map(of).collect()
 }
 
-/// What samples of a subsystem do.
+/// Responses of a subsystem's samples.
 pub(super) struct Realisations {
     /// Times of the rows, s.
     pub times: Vec<f64>,

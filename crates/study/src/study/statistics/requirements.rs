@@ -10,7 +10,7 @@ use crate::numerics::statistics::{REPLICATES, RareShare, normal_quantile, rare_s
 use crate::results::YieldSummary;
 use crate::study::reduced;
 
-/// What most of a requirement's name is when it stands for all of them.
+/// The name of all requirements together.
 const TOGETHER: &str = "all requirements";
 
 /// Starts of a search, at most, for many requirements together.
@@ -26,7 +26,7 @@ struct Together<'a> {
     name: &'a str,
     /// Share of the products whose margins may differ by more than the errors.
     doubt: f64,
-    /// Of each requirement.
+    /// Error of each requirement.
     errors: Vec<f64>,
     scales: Vec<f64>,
     /// Whether a sample fulfils all of them, by the sign of the errors.
@@ -97,7 +97,7 @@ fn sampled(rows: &Rows, margins: &reduced::Margins, samples: &[Vec<&[f64]>]) -> 
 }
 
 impl<'a> Together<'a> {
-    /// Of no requirement yet.
+    /// A group without requirements yet.
     fn new(rows: &'a Rows, name: &'a str, samples: &[Vec<&[f64]>]) -> Self {
         let count = samples.iter().map(Vec::len).sum();
         let (errors, scales, least) = (Vec::new(), Vec::new(), Vec::new());
@@ -160,7 +160,7 @@ impl<'a> Together<'a> {
         {
             let [least, most] = rare.interval.map(|fails| 1.0 - fails);
             // Where methods contradict one another, or the seen share, that share alone is stated.
-            // `least` is the share that fulfils at most: what fails least leaves most.
+            // `least` is the largest share that fulfils: the fewest failures leave most.
             let agrees = least >= interval[0] && most <= interval[1];
             if agrees && (count - share < TUNING.few_failing || least - most < interval[1] - interval[0]) {
                 (fails, interval) = (rare.value, [most, least]);
@@ -192,7 +192,7 @@ impl<'a> Together<'a> {
         })
     }
 
-    /// The share that fails, by samples that look for it.
+    /// The share that fails, by samples drawn near the failures.
     fn rare(&self, margins: &reduced::Margins) -> Option<RareShare> {
         let laws = self.rows.laws;
         // The least of all, each in its own scale, with errors that help, none, and errors that harm.

@@ -18,7 +18,7 @@ use crate::simulate::is_one_number;
 use crate::study::Options;
 use crate::study::answers::{Evaluator, Kept};
 
-/// Samples and what evaluates them.
+/// Samples and their evaluator.
 pub(super) struct Rows<'a> {
     pub description: &'a Description,
     options: &'a Options<'a>,
@@ -31,7 +31,7 @@ pub(super) struct Rows<'a> {
     pub products: Option<Products>,
 }
 
-/// What one row says of one output.
+/// Statistics of one output in one row.
 struct RowStatistics {
     moments: Moments,
     linear: f64,
@@ -201,7 +201,8 @@ impl<'a> Rows<'a> {
         self.evaluator.values(row, &[output], &self.points(replicate, fewer))
     }
 
-    /// How far the polynomial through an output's own samples is from the closure, where it may take its place.
+    /// Largest difference between the polynomial through an output's own samples and the closure, if it may replace the
+    /// closure.
     pub fn own_error(&self, row: usize, output: usize, stated: f64) -> Option<f64> {
         if self.kept.is_polynomial(row, output) {
             return Some(0.0);
@@ -223,7 +224,7 @@ impl<'a> Rows<'a> {
         (linear, deviations.iter().map(|d| d * d).sum::<f64>().sqrt())
     }
 
-    /// What an output does by each of its causes about the nominal values.
+    /// Effect of each cause on an output about the nominal values.
     pub fn causes(&self, row: usize, output: usize) -> Vec<Cause> {
         causes(&self.description.zones, self.laws, |at| self.derivatives(row, output, at))
     }

@@ -11,7 +11,7 @@ tuning! {
         most_samples_of_numbers: usize = 1 << 18, moves "statistics of reduced outputs";
         /// Samples where a model asks for no number: the quantiles of a normal law's three deviations need 2731.
         samples_of_random: usize = 1 << 12, moves "statistics of random excitations";
-        /// Most numbers that are kept: samples times rows times outputs.
+        /// Most numbers that are stored: samples times rows times outputs.
         most_numbers_of_random: usize = 1 << 26, moves "which statistics are refused";
         /// Most samples under random excitations: those of one seed have streams of their own.
         most_realisations: usize = 1 << 24, moves "which statistics are refused";
@@ -21,20 +21,21 @@ tuning! {
         most_samples_of_margins: usize = 1 << 18, moves "shares that fulfil requirements";
         /// If fewer samples than this fail, samples are drawn where it fails.
         few_failing: usize = 400, moves "shares that fulfil requirements";
-        /// If fewer samples than this fail, samples that are drawn at the failing places count if they say more.
+        /// If fewer samples than this fail, samples that are drawn at the failing points count if their interval is
+        /// narrower.
         many_failing: usize = 4000, moves "shares that fulfil requirements";
-        /// Samples from which places that fail are looked for.
+        /// Samples from which failing points are searched for.
         starts_of_places: usize = 12, moves "shares that fulfil requirements, and tolerances that are found for a yield";
-        /// Requirements whose margins at all samples are held at once.
+        /// Requirements whose margins at all samples are in memory at once.
         requirements_at_once: usize = 16, moves "memory of statistics";
-        /// Margins that are held at once in a search for points that fail.
+        /// Margins that are in memory at once in a search for points that fail.
         most_margins_at_once: usize = 1 << 22, moves "memory of statistics";
         /// Fewest simulations, a power of two.
         fewest_simulations: usize = 1 << 10, moves "errors of surrogates of statistics";
         /// Most simulations, a power of two.
         most_simulations: usize = 1 << 16, moves "errors of surrogates of statistics";
-        /// Shares of the products that may differ are told to this part of the smallest share beyond a quantile that
-        /// is asked for.
+        /// Shares of the products that may differ are determined to this part of the smallest share beyond a requested
+        /// quantile.
         fine_share: f64 = 0.25, moves "errors of surrogates of statistics";
         /// Numbers of simulations that may differ by more than ε, of which the best is taken for each quantile. The
         /// limits of the shares of all products have 95 % confidence together.
@@ -52,9 +53,9 @@ tuning! {
         few_samples: usize = 1 << 12, moves "statistics of outputs";
         /// Samples of a replicate for a mean and a deviation alone, if each costs a loop closure.
         few_closed_samples: usize = 1 << 8, moves "statistics of outputs";
-        /// Samples at which the polynomial through an output's own samples is held against the loop closure.
+        /// Samples at which the polynomial through an output's own samples is compared with the loop closure.
         compared_samples: usize = 256, moves "statistics of outputs";
-        /// The polynomial takes the closure's place if it differs by no more than the first, as a share of the values'
+        /// The polynomial replaces the closure if it differs by no more than the first, as a share of the values'
         /// range, or the second, as a share of the stated error.
         near_closure: (f64, f64) = (1e-4, 0.5), moves "statistics of outputs";
         /// A difference quotient's step, as a share of the interval's half width.

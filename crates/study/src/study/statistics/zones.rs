@@ -20,7 +20,7 @@ pub(super) struct LawInZone {
 }
 
 impl LawInZone {
-    /// Of all zones of a model, whose uncertain parameters have these names.
+    /// Laws in all zones of a model, whose uncertain parameters have these names.
     pub fn all(description: &Description, names: &[String]) -> Vec<Self> {
         let of = |zone: &Zone| Self { members: zone.indices(names), shape: zone.shape, law: zone.law };
         description.zones.iter().map(of).collect()
@@ -77,7 +77,7 @@ impl LawInZone {
 mod tests {
     use super::*;
 
-    /// Of a uniform law in the disc r² is uniform, in the ball r³; radii of normal laws have the moments of Rayleigh's
+    /// For a uniform law in the disc r² is uniform, in the ball r³; radii of normal laws have the moments of Rayleigh's
     /// distribution, of which little is cut off.
     #[test]
     fn radii_have_their_laws() {

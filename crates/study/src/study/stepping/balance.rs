@@ -21,7 +21,7 @@ pub struct Balanced {
     pub validation: (Validation, MethodSummary),
 }
 
-/// The validation samples, and the plan whose steps take their share of the bounds' tolerance, where there is one.
+/// The validation samples, and the plan whose steps take their share of the bounds' tolerance, if there is one.
 pub fn balance(study: &Study, plan: &StepPlan, progress: &Progress) -> Result<Balanced, SimulationError> {
     (study.stage)("validation samples");
     let problem = problem(study.description, &study.simulator);

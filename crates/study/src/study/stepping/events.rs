@@ -55,8 +55,8 @@ pub fn segmented_nominal(study: &Study) -> Result<Option<Schedule>, SimulationEr
     Ok(found.filter(|schedule| schedule.integration == Integration::Segments))
 }
 
-/// How motions between events are integrated; `None` where a method asks for the scheme's own steps: certified bounds
-/// enclose it, and who asks for it beside jets wants them across its steps.
+/// How motions between events are integrated; `None` if a method asks for the scheme's own steps: certified bounds
+/// enclose the scheme, and jets that are requested with it go across its steps.
 fn method_between_events(study: &Study) -> Option<SegmentMethod> {
     if may_leave_scheme(study) {
         return Some(SegmentMethod::Explicit);

@@ -47,7 +47,7 @@ pub fn may_be_explicit(study: &Study) -> bool {
     }
 }
 
-/// What stands against the method, as an error where the model asks for it.
+/// Reports an obstacle to the method as an error, if the model asks for the method.
 pub fn refused(study: &Study, obstacle: Obstacle) -> Result<(), SimulationError> {
     match study.description.simulation.scheme {
         SchemeChoice::Explicit => Err(SimulationError::NotExplicit { why: obstacle.to_string() }),
@@ -173,7 +173,8 @@ fn explicit_work(simulator: &Simulator, schedule: &Schedule) -> usize {
         * schedule.steps_before(schedule.rows - 1)
 }
 
-/// By what a subsystem is integrated under a tolerance, and why; nothing where none is given, or the model says it.
+/// The integrator of a subsystem under a tolerance, with the reason; `None` without a tolerance, or if the model
+/// chooses it.
 pub fn decision(description: &Description, simulator: &Simulator) -> Option<Decision> {
     let simulation = &description.simulation;
     let of_bounds = description.bounds.tolerance;

@@ -7,7 +7,7 @@ tuning! {
     "study: stepping" {
         /// Corners of the box that join the nominal sample as controlling samples of the step size.
         controlling_corners: usize = 16, moves "steps, and so the time errors and the last digits";
-        /// Ratio of a value's error to what halving the steps changes, at second order.
+        /// Ratio of a value's error to its change by halved steps, at second order.
         richardson: f64 = 4.0 / 3.0, moves "steps, and so the time errors and the last digits";
         /// Share of the steps' tolerance that shorter steps aim at.
         controlled_aim: f64 = 0.6, moves "steps, and so the time errors and the last digits";
@@ -31,7 +31,7 @@ tuning! {
         event_share: f64 = 1e-5, moves "steps, and so the time errors and the last digits";
         /// Samples spread over the box for each parameter, of which each has to meet the same events.
         event_samples: usize = 24, moves "which motions are cut at events";
-        /// Error of an explicit step, as a share of what the run may be off by, until it is known how errors grow.
+        /// Error of an explicit step, as a share of the run's error allowance, until the growth of errors is known.
         explicit_share: f64 = 0.01, moves "steps, and so the time errors and the last digits";
         /// Schedules of the explicit method that are tried.
         explicit_rounds: usize = 6, moves "steps, and so the time errors and the last digits";
@@ -43,7 +43,7 @@ tuning! {
         explicit_samples: usize = 32, moves "steps, and so the time errors and the last digits";
         /// Most steps where a model asks for the explicit method.
         explicit_most_steps: usize = 1_000_000, moves "which runs are refused";
-        /// Steps beyond those of the given schedule that the method may take where it is one of several.
+        /// Steps beyond those of the given schedule that the method may take if it is one of several.
         explicit_further_steps: usize = 500, moves "whether the explicit method is taken";
         /// Step of the scheme that the method is compared with where the model names none, s.
         typical_step: f64 = 1e-3, moves "whether the explicit method is taken";
@@ -57,7 +57,7 @@ tuning! {
         aim: f64 = 0.4, moves "steps, and so the time errors and the last digits";
         /// Share below which steps are joined.
         little: f64 = 0.1, moves "steps, and so the time errors and the last digits";
-        /// Most parts that a schedule's steps are divided into; beyond, it is left at what can be had.
+        /// Most parts that a schedule's steps are divided into; beyond, the best attained remains.
         parts: usize = 32, moves "steps, and so the time errors and the last digits";
         /// Most schedules that are tried.
         trials: usize = 10, moves "steps, and so the time errors and the last digits";

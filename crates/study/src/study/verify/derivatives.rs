@@ -1,7 +1,7 @@
 //! Derivatives of a mechanism's programs against central differences of the same programs with twice the digits.
 //!
-//! Differences of numbers with 32 digits tell a derivative to about 20: more than it has as an `f64`. Compared are the
-//! symbolic derivatives of the equations, the Newton matrix of a step, and derivatives by jets and by adjoints.
+//! Differences of numbers with 32 digits determine a derivative to about 20: more than it has as an `f64`. Compared are
+//! the symbolic derivatives of the equations, the Newton matrix of a step, and derivatives by jets and by adjoints.
 
 use std::ops::Range;
 
@@ -30,7 +30,7 @@ struct Point<'p> {
 }
 
 impl<'p> Point<'p> {
-    /// Of tapes that run one after the other, at values of the layout's registers.
+    /// A point of tapes that run one after the other, at values of the layout's registers.
     fn new(program: &'p impl Tapes, tapes: Vec<&'p Tape>, values: &[f64], rows: Vec<usize>) -> Self {
         let mut memory = DoubleDoubleMemory::new(program.registers(), program.constants());
         values.iter().enumerate().for_each(|(register, &value)| memory.set(register, value.into()));
@@ -139,7 +139,7 @@ fn tapes(program: &EquationsProgram) -> Vec<&Tape> {
     vec![program.residual(), program.rates(), program.closure(), program.jacobian(), program.rates_jacobian()]
 }
 
-/// What a tile holds after all tapes.
+/// Registers of a tile after all tapes.
 fn evaluated(program: &impl Tapes, tapes: &[&Tape], values: &[f64]) -> Tile {
     let mut tile = Tile::new(1, program.registers(), program.constants());
     values.iter().enumerate().for_each(|(register, &value)| tile.lane_mut(register)[0] = value);
@@ -224,7 +224,7 @@ fn of_rates(
     let mut direction = vec![(layout.time, length)];
     direction.extend(along(&layout.q, &layout.v));
     direction.extend(along(&layout.v, &layout.w));
-    // What moves apart from the others, by its scale at least, tells how large terms are that may cancel.
+    // Directions of the single registers, at least by their scales, show the size of terms that may cancel.
     let by_scale = |&(register, slope): &(usize, f64)| vec![(register, slope.abs().max(scales.of[register]))];
     let apart: Vec<Direction> = direction.iter().map(by_scale).collect();
     let (expected, sizes) = (point.by(&[direction]), sizes(&point.by(&apart)));
@@ -340,7 +340,7 @@ mod tests {
     use crate::numerics::larger;
     use crate::study::formulation::compiled;
 
-    /// A pendulum on a spring; an entry of ∂r/∂v in place of one of ∂r/∂q is seen, and the right ones are exact.
+    /// A pendulum on a spring; an entry of ∂r/∂v in place of one of ∂r/∂q is detected, and the right ones are exact.
     #[test]
     fn a_wrong_derivative_is_seen() {
         let text = "bodies: { ground: { points: { P: [0.2, 0.6] } }, rod: { mass: 2, inertia: 0.3, points: { A: [-0.4, 0.1], B: [0.5, 0] } } }\n\

@@ -7,9 +7,9 @@ use super::motion::Manufactured;
 use crate::assemble::{Start, System};
 use crate::numerics::ChebyshevSeries;
 
-/// The system with loads beside its forces and slips in its velocity constraints; its outputs are its coordinates,
-/// velocities, accelerations and multipliers (3n + m). `independent` coordinates are given at the start, the others
-/// follow.
+/// The system with loads in addition to its forces and slips in its velocity constraints; its outputs are its
+/// coordinates, velocities, accelerations and multipliers (3n + m). `independent` coordinates are given at the start,
+/// the others follow.
 pub fn loaded(system: &System, motion: &Manufactured, independent: &[usize]) -> System {
     let mut system = later(system, motion.begin);
     let n = system.q.len();

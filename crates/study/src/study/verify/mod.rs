@@ -1,5 +1,5 @@
 //! Verification of a model by manufactured solutions (Salari & Knupp, Sandia report SAND2000-1444; ASME V&V 10 and
-//! 20): does *this* mechanism, with *these* effects, integrate as theory tells?
+//! 20): does *this* mechanism, with *these* effects, integrate as theory predicts?
 //!
 //! `motion` makes a smooth motion on the constraints, near the nominal one (`fit`), and the loads with which it
 //! fulfils the equations of motion; `derivatives` compares the derivatives of all programs on it with differences,

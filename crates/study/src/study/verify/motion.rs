@@ -42,13 +42,14 @@ pub struct EquationsAtPoint<'s> {
     system: &'s System,
     program: EquationsProgram,
     tile: Tile,
-    /// Numbers of the constraints that follow from others, and of those that are kept.
+    /// Numbers of the constraints that follow from others, and of the independent ones.
     redundant: Vec<usize>,
     kept: Vec<usize>,
 }
 
 impl<'s> EquationsAtPoint<'s> {
-    /// Of a system with these parameters, of whose constraints those by the numbers `redundant` follow from others.
+    /// Equations of a system with these parameters, of whose constraints those by the numbers `redundant` follow from
+    /// others.
     pub fn new(system: &'s System, program: EquationsProgram, parameters: &[f64], redundant: Vec<usize>) -> Self {
         let mut tile = Tile::new(1, program.registers(), program.constants());
         for (register, &value) in program.layout.parameters.clone().zip(parameters) {
@@ -232,7 +233,7 @@ impl Manufactured {
         Err(why)
     }
 
-    /// A motion near the same polynomials over the first part of the time; `None` where there is none.
+    /// A motion near the same polynomials over the first part of the time; `None` if there is none.
     pub fn shortened(&self, share: f64, equations: &mut EquationsAtPoint) -> Option<Self> {
         Self::of_fit(self.fit.clone(), [self.begin, self.begin + share * self.length()], equations).ok()
     }

@@ -38,8 +38,8 @@ tuning! {
         /// How far polynomials may be from the nominal motion, as a share of a coordinate's range.
         near_nominal: f64 = 0.02, moves "manufactured motions";
         /// Coordinates that hardly move, by less than this share of their scale, swing by as much: a motion at rest
-        /// would tell nothing. The smaller ones where the first has no smooth motion: a swing may leave a clearance or
-        /// the steep part of friction.
+        /// would show nothing. The smaller ones are used if the first has no smooth motion: a swing may leave a
+        /// clearance or the steep part of friction.
         swings: [f64; 3] = [1e-2, 1e-4, 1e-6], moves "manufactured motions";
         /// Constraints are fulfilled where residuals are less than this share of the coordinates' scale.
         closed_constraint: f64 = 1e-12, moves "manufactured motions";
@@ -55,8 +55,8 @@ tuning! {
         /// Errors below these shares of a quantity's size are rounding's, whatever the model: of positions,
         /// velocities, accelerations and reactions.
         rounding_of_errors: [f64; 4] = [1e-13, 1e-12, 1e-10, 1e-10], moves "observed orders";
-        /// Share of a part that is left out at both ends: the manufactured motion is near the nominal one, and
-        /// switches at other instants.
+        /// Share of a part that is omitted at both ends: the manufactured motion is near the nominal one, and switches
+        /// at other instants.
         margin: f64 = 0.1, moves "which part of a motion is manufactured";
         /// Parts that are tried, the longest first.
         tried_parts: usize = 6, moves "which part of a motion is manufactured";

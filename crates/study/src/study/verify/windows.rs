@@ -25,7 +25,7 @@ fn parts(nominal: &Nominal, equations: &mut EquationsAtPoint, begins: bool) -> V
     found.into_iter().map(trimmed).collect()
 }
 
-/// A motion on a part after the time `reached`, behind what switches; `None` where there is no smooth one.
+/// A motion on a part after the time `reached`, after the last switch; `None` if there is no smooth one.
 pub fn later(nominal: &Nominal, equations: &mut EquationsAtPoint, reached: f64) -> Option<Manufactured> {
     let parts = parts(nominal, equations, reached > 0.0)
         .into_iter()
