@@ -73,7 +73,7 @@ fn quoted(name: &str) -> String {
 /// Takes a line of a call whose first point has the number `first`.
 ///
 /// # Errors
-/// Where it is of no point that waits, or cannot be read.
+/// If it is of no point that waits, or cannot be read.
 pub(super) fn take(questions: &Questions, first: u64, line: &str, answers: &mut Answers) -> Result<(), Trouble> {
     if !line.trim_start().starts_with('{') {
         return Ok(());

@@ -67,7 +67,7 @@ impl Pool {
     /// number of points.
     ///
     /// # Errors
-    /// Where the program cannot be started, and at an interruption.
+    /// If the program cannot be started, and at an interruption.
     pub fn answers(
         &self,
         points: &[Vec<f64>],

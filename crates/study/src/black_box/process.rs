@@ -42,7 +42,7 @@ impl Process {
     /// Starts a program.
     ///
     /// # Errors
-    /// Where it cannot be started.
+    /// If it cannot be started.
     pub fn start(mut command: Command) -> std::io::Result<Self> {
         command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
         // An interruption of the terminal is for mbint, which ends its processes itself.
@@ -134,7 +134,7 @@ fn write(mut stdin: impl Write, texts: &Receiver<String>) {
     }
 }
 
-/// Reads lines as long as they are allowed; `None` where they are too long or too many. The limit is read when
+/// Reads lines as long as they are allowed; `None` if they are too long or too many. The limit is read when
 /// something has come: before, the call may not have begun.
 fn read(stdout: impl Read, allowed: &AtomicU64, lines: &Sender<Option<String>>) {
     let mut stdout = BufReader::new(stdout);

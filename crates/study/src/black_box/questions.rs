@@ -18,7 +18,7 @@ impl Questions {
     /// Whether the row of an answer is of the time that was asked for.
     ///
     /// # Errors
-    /// Where it is of another.
+    /// If it is of another.
     pub(super) fn check_time(&self, row: usize, found: f64) -> Result<(), Trouble> {
         let wanted = self.times.get(row).copied().unwrap_or(f64::NAN);
         let spacing =
@@ -30,7 +30,7 @@ impl Questions {
     /// A value of an output in a row, in SI.
     ///
     /// # Errors
-    /// Where it is no number.
+    /// If it is no number.
     pub(super) fn value(&self, row: usize, output: usize, value: Option<f64>) -> Result<f64, Trouble> {
         let (name, si) = &self.outputs[output];
         let number = value.map(|value| if *si == 1.0 { value } else { value * si }).filter(|value| value.is_finite());

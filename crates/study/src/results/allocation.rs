@@ -30,7 +30,7 @@ pub struct ToleranceZone {
 pub struct AllocatedTolerance {
     /// The parameter's name, as a model file has it.
     pub parameter: String,
-    /// Its SI unit; empty where dimensionless or unknown.
+    /// Its SI unit; empty if dimensionless or unknown.
     pub unit: String,
     /// Its nominal value; unknown of a deviation around another parameter.
     pub nominal: f64,
@@ -65,7 +65,7 @@ pub struct NotMet {
     pub requirement: String,
     /// Its SI unit.
     pub unit: String,
-    /// The unit in which people see the margin, where the model names one.
+    /// The unit in which people see the margin, if the model names one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub display: Option<DisplayUnit>,
     /// Its margin with the tightest tolerances: negative.
@@ -106,7 +106,7 @@ pub struct Allocation {
     pub is_confirmed: bool,
     /// Cost against margin.
     pub trade: Vec<TradePoint>,
-    /// The model's own tolerances there; absent where they do not meet the requirements or their cost is unknown.
+    /// The model's own tolerances there; absent if they do not meet the requirements or their cost is unknown.
     pub trade_before: Option<TradePoint>,
     /// The result there.
     pub trade_after: Option<TradePoint>,

@@ -10,7 +10,7 @@ use crate::grammar::display_unit::DisplayUnit;
 pub struct AnalysisSummary {
     /// `motion`, `statics`, `kinematics` or `modes`.
     pub kind: String,
-    /// At an equilibrium: the smallest eigenvalue of its stiffness about its masses, rad²/s²; `null` where nothing can
+    /// At an equilibrium: the smallest eigenvalue of its stiffness about its masses, rad²/s²; `null` if nothing can
     /// move.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stability: Option<f64>,
@@ -33,9 +33,9 @@ pub struct AnalysisSummary {
 pub struct ValueSummary {
     /// Its name.
     pub output: String,
-    /// SI unit; empty where dimensionless or unknown.
+    /// SI unit; empty if dimensionless or unknown.
     pub unit: String,
-    /// The unit in which people see it, where the model names one.
+    /// The unit in which people see it, if the model names one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub display: Option<DisplayUnit>,
     /// With every parameter at its nominal value.

@@ -23,9 +23,9 @@ pub struct BlackBoxSummary {
 pub struct NoiseSummary {
     /// Name of the output.
     pub output: String,
-    /// Its SI unit; empty where dimensionless or unknown.
+    /// Its SI unit; empty if dimensionless or unknown.
     pub unit: String,
-    /// The unit in which people see it, where the model names one.
+    /// The unit in which people see it, if the model names one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub display: Option<DisplayUnit>,
     /// Largest difference of any row.

@@ -18,7 +18,7 @@ pub struct Bounds {
     pub outputs: Vec<OutputBounds>,
     /// Contributions of the parameters, output by output; empty if unknown.
     pub contributions: Vec<Vec<Contribution>>,
-    /// Share of the box that the bounds are of, in each row; empty where they are of all of it.
+    /// Share of the box that the bounds are of, in each row; empty if they are of all of it.
     pub covered: Vec<f64>,
     /// Analysis of the mechanism.
     pub analysis: Analysis,
@@ -26,7 +26,7 @@ pub struct Bounds {
     pub responses: Vec<ResponsePoint>,
     /// Samples at which outputs are least and largest, where they were searched for.
     pub witnesses: Vec<Witness>,
-    /// Derivatives at the nominal parameters, where they were asked for.
+    /// Derivatives at the nominal parameters, if they were asked for.
     pub derivatives: Vec<OutputDerivatives>,
     /// Functions of excitations under which outputs go the furthest, where something is excited.
     pub functions: Vec<FunctionWitness>,
@@ -84,9 +84,9 @@ pub struct Contribution {
 pub struct OutputBounds {
     /// Name in the model.
     pub name: String,
-    /// SI unit, empty where dimensionless or unknown.
+    /// SI unit, empty if dimensionless or unknown.
     pub unit: String,
-    /// The unit in which people see it, where the model names one; the numbers here are in SI.
+    /// The unit in which people see it, if the model names one; the numbers here are in SI.
     pub display: Option<DisplayUnit>,
     /// With every parameter at its nominal value.
     pub nominal: Vec<f64>,

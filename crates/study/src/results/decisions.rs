@@ -9,7 +9,7 @@ pub struct Decision {
     pub what: String,
     /// E.g. `no output asks for its reaction`.
     pub why: String,
-    /// Absent where it was not counted.
+    /// Absent if it was not counted.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub saves: Option<Saving>,
 }

@@ -10,9 +10,9 @@ use crate::grammar::display_unit::DisplayUnit;
 pub struct DesignParameter {
     /// Its name.
     pub name: String,
-    /// Its SI unit; empty where dimensionless or unknown.
+    /// Its SI unit; empty if dimensionless or unknown.
     pub unit: String,
-    /// The unit in which people see it, where the model names one.
+    /// The unit in which people see it, if the model names one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub display: Option<DisplayUnit>,
     /// Ends of its range, SI.
@@ -26,9 +26,9 @@ pub struct DesignParameter {
 pub struct DesignObjective {
     /// `least toe`, `most stroke`, `margin`, or `cost`.
     pub text: String,
-    /// SI unit of its value; empty where dimensionless, unknown, or a share of limits.
+    /// SI unit of its value; empty if dimensionless, unknown, or a share of limits.
     pub unit: String,
-    /// The unit in which people see it, where the model names one.
+    /// The unit in which people see it, if the model names one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub display: Option<DisplayUnit>,
     /// Whether small values are good.
@@ -119,13 +119,13 @@ pub struct DesignStudy {
     pub parameters: Vec<DesignParameter>,
     /// Optima, the best first; where no point is feasible, the nearest ones.
     pub optima: Vec<DesignPoint>,
-    /// The model's own point; absent where it cannot be run.
+    /// The model's own point; absent if it cannot be run.
     pub model_point: Option<DesignPoint>,
     /// The best point without tolerances, with its worst case; absent without tolerances, or where it cannot be run.
     pub nominal_point: Option<DesignPoint>,
     /// Requirements that the best point does not meet.
     pub not_met: Vec<NotMet>,
-    /// The cheapest tolerances at the best point, and cost against margin there; absent where tolerances have no cost.
+    /// The cheapest tolerances at the best point, and cost against margin there; absent if tolerances have no cost.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub allocation: Option<Allocation>,
     /// Cost against margin, with nominal values and tolerances of each point, from the cheapest on; empty where

@@ -43,6 +43,6 @@ impl std::ops::Add for StepInstructions {
 pub struct EffectCost {
     /// Where it acts.
     pub active: StepInstructions,
-    /// Where it and its like touch nothing in any sample of a tile; absent where it always acts.
+    /// Where it and its like touch nothing in any sample of a tile; absent if it always acts.
     pub inactive: Option<StepInstructions>,
 }

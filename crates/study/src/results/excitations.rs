@@ -9,9 +9,9 @@ use crate::grammar::display_unit::DisplayUnit;
 pub struct ExcitationSummary {
     /// Name of the output.
     pub output: String,
-    /// Its SI unit, empty where dimensionless or unknown.
+    /// Its SI unit, empty if dimensionless or unknown.
     pub unit: String,
-    /// The unit in which people see it, where the model names one.
+    /// The unit in which people see it, if the model names one.
     #[serde(skip)]
     pub display: Option<DisplayUnit>,
     /// With excitations that are constants, SI.
@@ -31,7 +31,7 @@ pub struct FunctionWitness {
     pub name: String,
     /// Its SI unit; that of the margin of a requirement.
     pub unit: String,
-    /// The unit in which people see it, where the model names one.
+    /// The unit in which people see it, if the model names one.
     pub display: Option<DisplayUnit>,
     /// Number of the output; `None` of reduced outputs and requirements.
     pub output: Option<usize>,

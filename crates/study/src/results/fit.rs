@@ -19,7 +19,7 @@ pub struct FitRow {
     pub measured: f64,
     /// Bound of its noise, SI.
     pub noise: f64,
-    /// Simulated at the estimate, SI; NaN where the motion stops before.
+    /// Simulated at the estimate, SI; NaN if the motion stops before.
     pub fitted: f64,
     /// Error of simulation, surrogate and interpolation in time in the last round, SI; infinite if the row carries no
     /// information.
@@ -31,9 +31,9 @@ pub struct FitRow {
 pub struct FitOutput {
     /// Name in the model.
     pub name: String,
-    /// SI unit, empty where dimensionless or unknown.
+    /// SI unit, empty if dimensionless or unknown.
     pub unit: String,
-    /// The unit in which people see it, where the model names one.
+    /// The unit in which people see it, if the model names one.
     #[serde(skip)]
     pub display: Option<DisplayUnit>,
 }
@@ -43,16 +43,16 @@ pub struct FitOutput {
 pub struct FitParameter {
     /// Name in the model.
     pub name: String,
-    /// SI unit, empty where dimensionless or unknown.
+    /// SI unit, empty if dimensionless or unknown.
     pub unit: String,
-    /// The unit in which people see it, where the model names one.
+    /// The unit in which people see it, if the model names one.
     #[serde(skip)]
     pub display: Option<DisplayUnit>,
     /// The model's interval, SI.
     pub prior: [f64; 2],
     /// Least squares, SI.
     pub estimate: f64,
-    /// Standard deviation of the estimate, SI; infinite where the data do not determine it.
+    /// Standard deviation of the estimate, SI; infinite if the data do not determine it.
     pub deviation: f64,
     /// Hull of the consistent set, SI: values outside of it contradict the data.
     pub hull: Option<[f64; 2]>,
@@ -150,7 +150,7 @@ pub struct Fit {
     pub residual: f64,
     /// Correlations of the estimate, row by row.
     pub correlations: Vec<Vec<f64>>,
-    /// All parameters with which every row is within its noise; absent where there are none, or more than
+    /// All parameters with which every row is within its noise; absent if there are none, or more than
     /// [`Fit::MOST_PARAMETERS`].
     pub set: Option<ConsistentSet>,
     /// Why there are none.

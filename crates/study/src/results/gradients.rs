@@ -9,9 +9,9 @@ use crate::grammar::display_unit::{DisplayUnit, ShownUnit};
 pub struct GradientParameter {
     /// Name in the model.
     pub name: String,
-    /// SI unit, empty where dimensionless or unknown.
+    /// SI unit, empty if dimensionless or unknown.
     pub unit: String,
-    /// The unit in which people see it, where the model names one.
+    /// The unit in which people see it, if the model names one.
     #[serde(skip)]
     pub display: Option<DisplayUnit>,
     /// Where the derivatives are taken, SI.
@@ -25,9 +25,9 @@ pub struct GradientParameter {
 pub struct OutputGradients {
     /// Name in the model.
     pub name: String,
-    /// SI unit, empty where dimensionless or unknown.
+    /// SI unit, empty if dimensionless or unknown.
     pub unit: String,
-    /// The unit in which people see it, where the model names one.
+    /// The unit in which people see it, if the model names one.
     #[serde(skip)]
     pub display: Option<DisplayUnit>,
     /// Its values over the times, SI.
@@ -115,16 +115,16 @@ pub struct Gradients {
 pub struct ReducedGradients {
     /// Name in the model.
     pub name: String,
-    /// SI unit, empty where dimensionless or unknown.
+    /// SI unit, empty if dimensionless or unknown.
     pub unit: String,
-    /// The unit in which people see it, where the model names one.
+    /// The unit in which people see it, if the model names one.
     #[serde(skip)]
     pub display: Option<DisplayUnit>,
     /// Whether it is the margin of a requirement.
     pub is_margin: bool,
     /// Its value, SI.
     pub value: f64,
-    /// The instant that decides it, s; `None` where more than one does.
+    /// The instant that decides it, s; `None` if more than one does.
     pub time: Option<f64>,
     /// Derivatives by the parameters, SI.
     pub by_parameters: Vec<f64>,

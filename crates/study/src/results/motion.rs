@@ -32,7 +32,7 @@ pub struct Motion {
     pub worst: Vec<WorstMotion>,
     /// Samples that cannot be assembled or do not move to the end.
     pub stopped: usize,
-    /// The motion as a function of the parameters; `None` where there are none, or where a sample that it needs stops.
+    /// The motion as a function of the parameters; `None` if there are none, or if a sample that it needs stops.
     pub polynomials: Option<MotionPolynomials>,
 }
 

@@ -10,7 +10,7 @@ use super::{Band, Bounds, OutputBounds};
 pub struct PeakSummary {
     /// Name of the output.
     pub output: String,
-    /// Its SI unit, in which the numbers are; empty where dimensionless or unknown.
+    /// Its SI unit, in which the numbers are; empty if dimensionless or unknown.
     pub unit: String,
     /// Name of the method.
     pub method: String,

@@ -4,16 +4,16 @@ use serde::Serialize;
 
 use crate::grammar::display_unit::DisplayUnit;
 
-/// A reduced output's bounds. Numbers are in the output's SI unit, `null` where unknown.
+/// A reduced output's bounds. Numbers are in the output's SI unit, `null` if unknown.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ReducedSummary {
     /// Its name in the model.
     pub name: String,
     /// Its definition in the model: `max of pin.force`.
     pub of: String,
-    /// Its SI unit; empty where dimensionless or unknown.
+    /// Its SI unit; empty if dimensionless or unknown.
     pub unit: String,
-    /// The unit in which people see it, where the model names one.
+    /// The unit in which people see it, if the model names one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub display: Option<DisplayUnit>,
     /// With every parameter at its nominal value.
@@ -23,7 +23,7 @@ pub struct ReducedSummary {
     /// Contributions of the parameters, the largest total index first; empty if unknown.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub contributions: Vec<ReducedContribution>,
-    /// The simulated sample with the smallest value, and the one with the largest; absent where no sample has a value.
+    /// The simulated sample with the smallest value, and the one with the largest; absent if no sample has a value.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub worst: Option<[WorstCase; 2]>,
     /// Set where some of the samples have no value, as of an event that does not occur: how many of those simulated

@@ -27,16 +27,16 @@ impl Verdict {
     }
 }
 
-/// A requirement with its verdict. Numbers are in the requirement's SI unit, `null` where unknown.
+/// A requirement with its verdict. Numbers are in the requirement's SI unit, `null` if unknown.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RequirementSummary {
     /// Its name in the model.
     pub name: String,
     /// The requirement as the model writes it: `x3 >= 0.4 m`.
     pub text: String,
-    /// SI unit of the margin; empty where dimensionless or unknown.
+    /// SI unit of the margin; empty if dimensionless or unknown.
     pub unit: String,
-    /// The unit in which people see the margin, where the model names one.
+    /// The unit in which people see the margin, if the model names one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub display: Option<DisplayUnit>,
     /// Whether it is fulfilled.
@@ -46,7 +46,7 @@ pub struct RequirementSummary {
     /// How far the bounds keep from the limit over the whole box: negative where they pass it. The truth is within
     /// `error`.
     pub margin: f64,
-    /// The margin in percent of the limit; absent where the limit is zero or no constant.
+    /// The margin in percent of the limit; absent if the limit is zero or no constant.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub percent: Option<f64>,
     /// How far the margin may be from the truth.
@@ -57,7 +57,7 @@ pub struct RequirementSummary {
     pub time: f64,
     /// Name of the method whose bounds decide.
     pub method: String,
-    /// The simulated sample that is nearest to failing, or fails most; absent where none was simulated.
+    /// The simulated sample that is nearest to failing, or fails most; absent if none was simulated.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub nearest: Option<NearestCase>,
     /// Advice on how to decide it, if it is undecided.
@@ -84,7 +84,7 @@ pub struct NearestCase {
     pub corner: bool,
     /// Settings that give a run these parameters, for `--set`: `l1=0.15 m`.
     pub settings: Vec<String>,
-    /// The command that shows it; empty where the model is of no file.
+    /// The command that shows it; empty if the model is of no file.
     #[serde(skip_serializing_if = "String::is_empty")]
     pub command: String,
 }

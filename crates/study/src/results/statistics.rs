@@ -132,7 +132,7 @@ pub struct OutputStatisticsSummary {
     pub output: String,
     /// SI unit.
     pub unit: String,
-    /// The unit in which people see it, where the model names one.
+    /// The unit in which people see it, if the model names one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub display: Option<DisplayUnit>,
     /// When, s.
@@ -192,7 +192,7 @@ pub struct NumberStatistics {
     pub name: String,
     /// SI unit.
     pub unit: String,
-    /// The unit in which people see it, where the model names one.
+    /// The unit in which people see it, if the model names one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub display: Option<DisplayUnit>,
     /// Mean.

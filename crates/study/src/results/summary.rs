@@ -167,7 +167,7 @@ pub struct DampedMode {
 pub struct ParameterSummary {
     /// Its name.
     pub name: String,
-    /// Its SI unit; empty where none is known.
+    /// Its SI unit; empty if none is known.
     pub unit: String,
     /// The unit in which people see it, where the model writes it in another.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -221,15 +221,15 @@ pub struct SubsystemSummary {
     pub methods: Vec<MethodSummary>,
 }
 
-/// The largest width and errors of a band over the run, in the output's unit (`null` where unknown), and from which
+/// The largest width and errors of a band over the run, in the output's unit (`null` if unknown), and from which
 /// time on it is not resolved.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ErrorSummary {
     /// Name of the output.
     pub output: String,
-    /// Its SI unit, in which the numbers are; empty where dimensionless or unknown.
+    /// Its SI unit, in which the numbers are; empty if dimensionless or unknown.
     pub unit: String,
-    /// The unit in which people see them, where the model names one.
+    /// The unit in which people see them, if the model names one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub display: Option<DisplayUnit>,
     /// Name of the method.
@@ -283,7 +283,7 @@ pub struct MethodSummary {
     /// Outputs that at some time do not follow from the coordinates, and were expanded themselves there.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub expanded_outputs: Vec<String>,
-    /// Computing time, s, where it was asked for.
+    /// Computing time, s, if it was asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub seconds: Option<f64>,
 }

@@ -49,7 +49,7 @@ pub struct Convergence {
     pub orders: Vec<f64>,
     /// Error below which rounding counts.
     pub rounding: f64,
-    /// The observed order that counts; `None` where steps of any length are exact.
+    /// The observed order that counts; `None` if steps of any length are exact.
     pub order: Option<f64>,
     /// Whether the error falls as theory predicts.
     pub is_verified: bool,
@@ -276,7 +276,7 @@ impl Convergence {
 
     /// The observed order after errors that rounding does not touch: the last one; where rounding ends the errors'
     /// fall, the largest of the last three, which it only lowers, and of those below the stated rounding, as far as
-    /// errors fell there. `None` where there are none: steps of any length are exact.
+    /// errors fell there. `None` if there are none: steps of any length are exact.
     fn observed(&self) -> Option<f64> {
         let stated = TUNING.touched * self.rounding();
         if !(self.is_flat() || self.is_exact()) {

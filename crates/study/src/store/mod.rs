@@ -124,7 +124,7 @@ impl PartStore {
     /// A part that is there and whole. One that is damaged counts as missing.
     ///
     /// # Errors
-    /// Where it is there and cannot be read.
+    /// If it is there and cannot be read.
     pub fn part(&self, name: &str) -> Result<Option<PartReader>, StoreError> {
         let part = PartReader::open(&self.path(PARTS, name, "part"))?;
         if part.is_some() {
@@ -141,7 +141,7 @@ impl PartStore {
     /// Begins a part.
     ///
     /// # Errors
-    /// Where the file cannot be made.
+    /// If the file cannot be made.
     pub fn begin(&self, name: &str) -> Result<PartWriter, StoreError> {
         locked(&self.begun).insert(name.to_owned());
         PartWriter::begin(&self.path(PARTS, name, "part"))
@@ -158,7 +158,7 @@ impl PartStore {
     /// Leaves a task to a shard.
     ///
     /// # Errors
-    /// Where it cannot be written.
+    /// If it cannot be written.
     pub fn defer(&self, name: &str, task: &Task, seconds: f64, bytes: u64) -> Result<(), StoreError> {
         task.write(&self.path(TASKS, name, "task"))?;
         let deferred = Deferred { part: name.to_owned(), simulations: task.samples.len(), seconds, bytes };
@@ -174,7 +174,7 @@ impl PartStore {
     /// A task that was deferred.
     ///
     /// # Errors
-    /// Where it is missing or damaged.
+    /// If it is missing or damaged.
     pub fn task(&self, name: &str) -> Result<Task, StoreError> {
         Task::read(&self.path(TASKS, name, "task"))
     }

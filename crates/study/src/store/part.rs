@@ -56,7 +56,7 @@ impl PartWriter {
     /// The next rows' values.
     ///
     /// # Errors
-    /// Where they cannot be written.
+    /// If they cannot be written.
     pub fn rows(&mut self, values: &[f64]) -> Result<(), StoreError> {
         let mut bytes = std::mem::take(&mut self.bytes);
         bytes.clear();
@@ -69,7 +69,7 @@ impl PartWriter {
     /// Ends the part, which is whole then.
     ///
     /// # Errors
-    /// Where it cannot be written.
+    /// If it cannot be written.
     pub fn finish(mut self, simulated: &Simulated, scan: Option<&ScanBounds>) -> Result<(), StoreError> {
         let outcome = postcard::to_stdvec(&(simulated, scan))?;
         self.write(&outcome)?;
@@ -131,7 +131,7 @@ impl PartReader {
     /// The next values, as many as `into` takes.
     ///
     /// # Errors
-    /// Where there are fewer, or they cannot be read.
+    /// If there are fewer, or they cannot be read.
     pub fn read(&mut self, into: &mut [f64]) -> Result<(), StoreError> {
         self.left = self.left.checked_sub(into.len() as u64).ok_or_else(|| StoreError::damaged(&self.path))?;
         self.bytes.resize(8 * into.len(), 0);

@@ -39,9 +39,9 @@ pub struct StudyRequest {
     /// Absolute path of the folder whose files the models may name in addition to those of their own folders.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub root: Option<PathBuf>,
-    /// Scenes; all where empty.
+    /// Scenes; all if empty.
     pub scenes: Vec<String>,
-    /// Methods; the model's where empty.
+    /// Methods; the model's if empty.
     pub methods: Vec<String>,
     /// Whether certified bounds are added.
     pub certify: bool,
@@ -158,7 +158,7 @@ impl StudyFolder {
     /// Writes the plan of a round.
     ///
     /// # Errors
-    /// Where it cannot be written.
+    /// If it cannot be written.
     pub fn write(&self, round: usize, asked: StudyRequest, shards: Vec<Shard>) -> Result<(), StoreError> {
         std::fs::create_dir_all(&self.0).map_err(|error| StoreError::io(&self.0, error))?;
         let plan = Plan { format: FORMAT, mbint: env!("CARGO_PKG_VERSION").to_owned(), round, asked, shards };

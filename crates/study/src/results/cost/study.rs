@@ -106,7 +106,7 @@ pub struct CostPoint {
     pub steps: usize,
     /// The best of a few runs, s; compiling the model is not in it.
     pub seconds: f64,
-    /// How far the bounds are off; infinite where they are not known at all.
+    /// How far the bounds are off; infinite if they are not known at all.
     pub deviation: Deviation,
     /// Whether the error is smaller than the reference's own, and therefore not known.
     pub limited: bool,
