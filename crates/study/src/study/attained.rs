@@ -43,7 +43,7 @@ type BoundsAlong = (Vec<(Method, Outcome)>, Option<(Outcome, Attained)>);
 /// Bounds by every method that is wanted, which know the ends that were searched for before, where they were.
 ///
 /// # Errors
-/// Where a sample cannot be simulated.
+/// If a sample cannot be simulated.
 pub(super) fn bound_along(
     study: &Study,
     steps: Steps<'_>,
@@ -61,11 +61,11 @@ pub(super) fn bound_along(
     Ok((methods, found.map(|(outcome, attained, _)| (outcome, attained))))
 }
 
-/// Searches the ends of all outputs of an ensemble; `None` where surrogates need no help, or motions have no gradients.
+/// Searches the ends of all outputs of an ensemble; `None` if surrogates need no help, or motions have no gradients.
 /// The simulations are noted by the ensemble.
 ///
 /// # Errors
-/// Where a sample cannot be simulated.
+/// If a sample cannot be simulated.
 pub(super) fn attained(
     study: &Study,
     motions: &dyn Ensemble,
@@ -139,7 +139,7 @@ impl<'s, 'm> AttainedSearch<'s, 'm> {
         Self { study, motions, slopes, attained, allowed, work: 0, work_of_kept: 0, begun, simulated }
     }
 
-    /// Ends of all rows and outputs; `None` where gradients do not reach them.
+    /// Ends of all rows and outputs; `None` if gradients do not reach them.
     fn run(&mut self) -> Result<Option<FollowedEnds>, SimulationError> {
         let (rows, outputs) = (self.motions.rows(), self.motions.outputs());
         let every = (2 * rows * outputs).div_ceil(TUNING.followed_ends).max(1);
@@ -274,7 +274,7 @@ impl<'s, 'm> AttainedSearch<'s, 'm> {
         doubted.iter().flat_map(|&end| corners.iter().map(move |corner| self.climb(end, corner.clone()))).collect()
     }
 
-    /// Polynomials of outputs in some rows, as far as points are enough for any; `None` where gradients are not known.
+    /// Polynomials of outputs in some rows, as far as points are enough for any; `None` if gradients are not known.
     fn surfaces(&mut self, rows: &[usize]) -> Result<Option<Followable>, SimulationError> {
         let k = self.study.domain.dimension();
         let mut points = vec![vec![0.0; k]];
@@ -328,7 +328,7 @@ impl<'s, 'm> AttainedSearch<'s, 'm> {
         Ok(())
     }
 
-    /// Values and gradients (in ξ) of outputs, one for each that is wanted of the points. `None` where there are no
+    /// Values and gradients (in ξ) of outputs, one for each that is wanted of the points. `None` if there are no
     /// gradients.
     fn slopes(&mut self, points: &[Vec<f64>], wanted: &[Wanted]) -> Result<Option<Vec<Slope>>, SimulationError> {
         let study = self.study;

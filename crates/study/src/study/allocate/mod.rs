@@ -33,7 +33,7 @@ use worst::{Slack, Worst};
 /// How to allocate.
 #[derive(Clone, Copy, Debug)]
 pub struct AllocateOptions {
-    /// The share of the production that fulfils all requirements; every case where absent.
+    /// The share of the production that fulfils all requirements; every case if absent.
     pub share: Option<f64>,
     /// Largest multiple of the model's tolerances that is examined.
     pub widest: f64,
@@ -53,7 +53,7 @@ pub enum AllocateError {
 /// Finds the loosest, or cheapest, tolerances that meet all requirements.
 ///
 /// # Errors
-/// Where a model has no requirement or no tolerance that may change, or where it cannot be run.
+/// If a model has no requirement or no tolerance that may change, or if it cannot be run.
 pub fn allocate(
     description: &Description,
     asked: AllocateOptions,

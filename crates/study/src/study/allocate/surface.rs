@@ -38,7 +38,7 @@ impl<'k> Surface<'k> {
         self.items.len() <= MOST_ON_GRIDS
     }
 
-    /// How far a margin may be off; unknown where it cannot be relied on.
+    /// How far a margin may be off; unknown if it cannot be relied on.
     pub fn error(&self, requirement: usize) -> f64 {
         self.kept.error(requirement)
     }

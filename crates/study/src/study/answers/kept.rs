@@ -136,7 +136,7 @@ impl Kept {
     }
 
     /// The polynomial through an output's own samples in a row: its terms in ξ ∈ \[−1, 1\] of
-    /// [`parameters`](Self::parameters), and the coefficients before them. `None` where the box was split.
+    /// [`parameters`](Self::parameters), and the coefficients before them. `None` if the box was split.
     pub fn polynomial(&self, row: usize, output: usize) -> Option<(&SparseBasis, &[f64])> {
         let (part, index) = self.indices[output];
         self.parts[part].part.surrogate.polynomial(row, index)
@@ -151,13 +151,13 @@ impl Kept {
         part.surrogate.own_values(row, &[index], &samples.iter().map(pick).collect::<Vec<_>>())
     }
 
-    /// Margins of all requirements. `None` where the model has none, or one of them is not known.
+    /// Margins of all requirements. `None` if the model has none, or one of them is not known.
     pub fn margins(&self) -> Option<Margins<'_>> {
         let asked = self.parts.iter().filter(|placed| !placed.requirements.is_empty());
         Margins::of(asked.map(Placed::margins).collect::<Option<Vec<_>>>()?).filter(|margins| margins.count() > 0)
     }
 
-    /// All `count` reduced outputs. `None` where there are none, or one of them is not known.
+    /// All `count` reduced outputs. `None` if there are none, or one of them is not known.
     pub fn reduced(&self, count: usize) -> Option<ReducedValues<'_>> {
         let asked = self.parts.iter().filter(|placed| !placed.reduced.is_empty());
         ReducedValues::of(asked.map(Placed::margins).collect::<Option<Vec<_>>>()?, count).filter(|_| count > 0)
@@ -183,7 +183,7 @@ impl Kept {
     /// Prepares evaluation: compiles the loop closures that outputs need.
     ///
     /// # Errors
-    /// Where a closure's equations have no finite values at the start.
+    /// If a closure's equations have no finite values at the start.
     pub fn evaluator(&self) -> Result<Evaluator<'_>, SimulationError> {
         let closures = self.parts.iter().map(|placed| placed.part.closures()).collect::<Result<_, _>>()?;
         Ok(Evaluator { kept: self, closures })
@@ -192,7 +192,7 @@ impl Kept {
 
 impl Evaluator<'_> {
     /// Outputs in one row at samples of the model's box (values of all its uncertain parameters, in their units),
-    /// output by output, sample by sample; NaN where a closure has no solution. In parallel, with the same bits for any
+    /// output by output, sample by sample; NaN if a closure has no solution. In parallel, with the same bits for any
     /// number of threads.
     pub fn values<P: AsRef<[f64]> + Sync>(&self, row: usize, outputs: &[usize], samples: &[P]) -> Vec<f64> {
         let chunks: Vec<Vec<f64>> = samples

@@ -18,7 +18,7 @@ pub(super) struct Surfaces {
 pub(super) struct Surface(pub Vec<f64>);
 
 impl Surfaces {
-    /// Through samples at these ξ, for functions with these derivatives there (in ξ); `None` where they are too few.
+    /// Through samples at these ξ, for functions with these derivatives there (in ξ); `None` if they are too few.
     pub fn new(domain: &ParameterBox, points: Vec<Vec<f64>>, functions: &[Derivatives<'_>]) -> Option<Self> {
         let fit = GradientFit::new(points, functions)?;
         let decomposition = SobolDecomposition::new(fit.basis(), &domain.zones);

@@ -20,7 +20,7 @@ use crate::simulate::SimulationError;
 /// Refuses a question about bodies to a program and to dimensions alone.
 ///
 /// # Errors
-/// Where there is no mechanism.
+/// If there is no mechanism.
 pub(super) fn needs_mechanism(description: &Description, question: &str) -> Result<(), Refusal> {
     match description.analysis {
         Analysis::Dimensions => {
@@ -33,7 +33,7 @@ pub(super) fn needs_mechanism(description: &Description, question: &str) -> Resu
 /// Refuses a question about equations to a program.
 ///
 /// # Errors
-/// Where a program answers instead of equations.
+/// If a program answers instead of equations.
 pub(super) fn needs_equations(description: &Description, question: &str) -> Result<(), Refusal> {
     match &description.black_box {
         None => Ok(()),

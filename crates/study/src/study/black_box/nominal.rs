@@ -7,7 +7,7 @@ use crate::study::problem::Study;
 /// Asks the program for the nominal point, once: a program that cannot answer that one is asked for no other.
 ///
 /// # Errors
-/// Where it has no answer, or cannot be started.
+/// If it has no answer, or cannot be started.
 pub(in crate::study) fn ask_nominal(study: &Study) -> Result<(), SimulationError> {
     let Some(source) = &study.source else { return Ok(()) };
     let nominal = study.domain.nominal.clone();

@@ -127,7 +127,7 @@ impl ProgramSource {
     /// The model's outputs (row, output) at samples, sample by sample. Known points are not asked again.
     ///
     /// # Errors
-    /// Where the program cannot be started, and at an interruption.
+    /// If the program cannot be started, and at an interruption.
     pub fn answers(
         &self,
         samples: &[Sample],
@@ -162,7 +162,7 @@ impl ProgramSource {
     /// The same, asked once more whatever is known.
     ///
     /// # Errors
-    /// Where the program cannot be started, and at an interruption.
+    /// If the program cannot be started, and at an interruption.
     pub fn once_more(
         &self,
         samples: &[Sample],

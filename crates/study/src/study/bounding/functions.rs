@@ -7,7 +7,7 @@ use crate::numerics::{Cell, Range, Sample, largest};
 /// An end that a function attains.
 #[derive(Clone, Copy, Debug)]
 pub struct FunctionEnd {
-    /// The output under the worst function found; NaN where none could be simulated.
+    /// The output under the worst function found; NaN if none could be simulated.
     pub value: f64,
     /// How much further the end may be: the gain that the gradient at that function still promises, and the error of
     /// the cells.
@@ -142,7 +142,7 @@ impl FunctionEnds {
         Range { lower: lower.value, upper: upper.value }
     }
 
-    /// How much further one of them may be; NaN where that is not known of both.
+    /// How much further one of them may be; NaN if that is not known of both.
     pub fn open(&self, row: usize, output: usize) -> f64 {
         largest(self.ends[row * self.outputs + output].map(|end| end.open))
     }

@@ -44,7 +44,7 @@ pub struct Bounded {
     pub nominal: Outcome,
     /// All that was simulated under the schedule, the nominal motion too where it lies in the box.
     pub seen: Ledger,
-    /// Absent where no method is asked for.
+    /// Absent if no method is asked for.
     pub validation: Option<(Validation, MethodSummary)>,
     pub methods: Vec<(Method, Outcome)>,
     /// The same with halved steps, where asked for.

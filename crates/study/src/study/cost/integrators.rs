@@ -20,7 +20,7 @@ const INTEGRATORS: [Integrator; 4] =
 /// Every scheme's settings, from coarse to fine; those that were done before an interruption.
 ///
 /// # Errors
-/// Where a scheme cannot be compiled or started at all; steps that fail make a setting without a result.
+/// If a scheme cannot be compiled or started at all; steps that fail make a setting without a result.
 pub(super) fn trajectories(
     model: &Description,
     system: &System,

@@ -33,7 +33,7 @@ pub struct CostOptions<'a> {
     pub tolerance: f64,
     /// s, about. The reference is as fine as a third of it allows; without time for a coarse one, nothing is run.
     pub budget: f64,
-    /// Threads; all cores where absent.
+    /// Threads; all cores if absent.
     pub threads: Option<usize>,
     /// Called now and then with the fraction that is done.
     pub progress: &'a (dyn Fn(f64) + Sync),
@@ -69,7 +69,7 @@ pub enum CostError {
 /// Studies a model: every setting of the grid that the budget allows, cheap ones first.
 ///
 /// # Errors
-/// Where the model cannot be run at all, or the reference cannot be computed.
+/// If the model cannot be run at all, or the reference cannot be computed.
 pub fn cost(model: &Description, options: &CostOptions) -> Result<CostStudy, CostError> {
     super::black_box::needs_mechanism(model, "a study of methods and integrators").map_err(RunError::from)?;
     let begun = Instant::now();

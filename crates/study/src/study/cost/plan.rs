@@ -25,7 +25,7 @@ impl ReferencePlan {
     /// there is where none is. Where the error has an expansion in powers of the steps, these are extrapolated.
     ///
     /// # Errors
-    /// Where a run fails, or even the coarsest takes too long, or there are too many parameters for any.
+    /// If a run fails, or even the coarsest takes too long, or there are too many parameters for any.
     pub(super) fn within_budget(
         model: &Description,
         composable: bool,

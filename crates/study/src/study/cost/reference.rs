@@ -30,7 +30,7 @@ impl Reference {
     /// Carries out a plan. `progress` gets the share that is done.
     ///
     /// # Errors
-    /// Where a run fails or ends early.
+    /// If a run fails or ends early.
     pub(super) fn compute(
         model: &Description,
         plan: &ReferencePlan,

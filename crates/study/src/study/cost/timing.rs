@@ -35,7 +35,7 @@ pub(super) fn best_of<T, E>(
 /// Runs a setting of a model.
 ///
 /// # Errors
-/// Where nothing could be run at all.
+/// If nothing could be run at all.
 pub(super) fn bounds(
     model: &Description,
     setting: &Setting,
