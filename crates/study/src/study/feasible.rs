@@ -111,7 +111,7 @@ enum Found {
 /// Bounds of the part of the box that is feasible.
 ///
 /// # Errors
-/// Where no part is, and as for any run.
+/// If no part is, and as for any run.
 pub(super) fn run(study: &Study) -> Result<(Bounds, Summary), RunError> {
     let pieces = cut(study)?;
     let pieces: Vec<Piece> = pieces.into_iter().filter(|piece| !matches!(piece.found, Found::Nothing)).collect();

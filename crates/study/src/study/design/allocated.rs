@@ -20,7 +20,7 @@ fn require_margin(model: &mut Description, margin: f64) {
     }
 }
 
-/// The cheapest tolerances at nominal values, as a study confirms them; `None` where none may change.
+/// The cheapest tolerances at nominal values, as a study confirms them; `None` if none may change.
 pub fn allocated(
     question: &Question,
     axes: &Axes,

@@ -74,7 +74,7 @@ struct Question {
     goal: Goal,
     /// Whether small values of the objective are good.
     is_least: bool,
-    /// The share of the production that counts; every case where absent.
+    /// The share of the production that counts; every case if absent.
     share: Option<f64>,
 }
 
@@ -113,7 +113,7 @@ impl Question {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct DesignOptions {
     /// The share of the production that fulfils all requirements and is at least as good as the objective's value;
-    /// every case where absent.
+    /// every case if absent.
     pub share: Option<f64>,
 }
 
@@ -121,7 +121,7 @@ pub struct DesignOptions {
 /// tolerances about them.
 ///
 /// # Errors
-/// Where the model has no `design`, or cannot be run.
+/// If the model has no `design`, or cannot be run.
 pub fn design(description: &Description, asked: DesignOptions, options: &Options) -> Result<DesignStudy, DesignError> {
     let Some(design) = &description.design else {
         let message = "the model has no `design`: name free parameters with their ranges, and an `objective`";

@@ -31,7 +31,7 @@ pub struct StudiedPoint {
     pub of_surrogate: usize,
 }
 
-/// A study at a point; `None` where the mechanism cannot be run there.
+/// A study at a point; `None` if the mechanism cannot be run there.
 pub fn studied(
     question: &Question,
     axes: &Axes,
@@ -151,7 +151,7 @@ fn of_rows(bounds: &Bounds, output: usize) -> impl Iterator<Item = [f64; 2]> + '
     (0..bounds.times.len()).map(of_row)
 }
 
-/// The result of a run; `None` where the mechanism cannot be run.
+/// The result of a run; `None` if the mechanism cannot be run.
 fn checked<T>(found: Result<T, RunError>, options: &Options) -> Result<Option<T>, DesignError> {
     match found {
         _ if (options.interrupted)() => Err(DesignError::Interrupted),

@@ -11,7 +11,7 @@ use super::{DesignError, Found, Question};
 use crate::results::DesignKind;
 use crate::study::Options;
 
-/// The optimum near to a rough one, with its study; `None` where the mechanism cannot be run there, or
+/// The optimum near to a rough one, with its study; `None` if the mechanism cannot be run there, or
 /// the optimum is known.
 pub fn refined(
     question: &Question,

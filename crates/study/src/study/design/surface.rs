@@ -31,7 +31,7 @@ impl DesignSurface {
     /// Over a region, or the largest part of it about a point that has a surrogate.
     ///
     /// # Errors
-    /// Where none of them has.
+    /// If none of them has.
     pub fn new(
         question: &Question,
         axes: &Axes,

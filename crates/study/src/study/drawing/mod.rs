@@ -27,7 +27,7 @@ use tuning::TUNING;
 /// Draws a model's nominal start.
 ///
 /// # Errors
-/// Where the mechanism cannot be built or assembled.
+/// If the mechanism cannot be built or assembled.
 pub fn drawing(description: &Description) -> Result<Drawing, RunError> {
     let drawing = drawn(description, None, None)?;
     if !has_ground(description) {

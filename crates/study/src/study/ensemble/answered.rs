@@ -14,7 +14,7 @@ use crate::study::black_box::source::ProgramSource;
 /// rows at once. A sample without an answer stops in its first row.
 ///
 /// # Errors
-/// Where the program cannot be started.
+/// If the program cannot be started.
 pub fn answered(
     motions: &Motions,
     source: &ProgramSource,

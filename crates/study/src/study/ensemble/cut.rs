@@ -13,7 +13,7 @@ use crate::simulate::{JetBox, SegmentRun, SimulationError, segment_jets};
 /// As [`Ensemble::segments`].
 ///
 /// # Errors
-/// Where a sample cannot be assembled.
+/// If a sample cannot be assembled.
 pub fn cut(motions: &Motions, samples: &[Sample]) -> Result<Option<CutMotions>, SimulationError> {
     let Some(segments) = motions.schedule.segments() else { return Ok(None) };
     if STEP_NODES * segments.count() * 2 * motions.scales().len() * samples.len() > TUNING.most_values {
@@ -30,7 +30,7 @@ pub fn cut(motions: &Motions, samples: &[Sample]) -> Result<Option<CutMotions>, 
 /// As [`Ensemble::segment_jets`].
 ///
 /// # Errors
-/// Where the sample cannot be assembled.
+/// If the sample cannot be assembled.
 pub fn cut_jet(
     motions: &Motions,
     space: &JetSpace,

@@ -10,7 +10,7 @@ use crate::simulate::{Observed, Schedule, SimulationError, Steps, integrator};
 /// motion inside them. None at an interruption.
 ///
 /// # Errors
-/// Where a sample cannot be assembled.
+/// If a sample cannot be assembled.
 pub fn dense(motions: &Motions, samples: &[Sample]) -> Result<Option<DenseMotions>, SimulationError> {
     if !motions.schedule.passes_rows() || motions.schedule.segments().is_some() {
         return Ok(None);

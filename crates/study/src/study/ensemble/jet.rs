@@ -14,7 +14,7 @@ use crate::simulate::{JetBox, Observed, SimulationError, jet_integrator};
 /// As [`Ensemble::jets`](crate::methods::Ensemble::jets).
 ///
 /// # Errors
-/// Where the middle of the box cannot be assembled.
+/// If the middle of the box cannot be assembled.
 pub fn jet_about_middle(
     motions: &Motions,
     space: &JetSpace,
@@ -32,7 +32,7 @@ pub fn jet_about_middle(
 /// The same of a motion about any sample: coefficients of the outputs, row by row, in blocks.
 ///
 /// # Errors
-/// Where the sample cannot be assembled.
+/// If the sample cannot be assembled.
 pub fn jet_about(
     motions: &Motions,
     space: &JetSpace,

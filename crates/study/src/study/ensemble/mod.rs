@@ -156,7 +156,7 @@ impl<'a> Motions<'a> {
     /// As [`Ensemble::simulate`], whether or not simulations are stored.
     ///
     /// # Errors
-    /// Where a sample cannot be assembled.
+    /// If a sample cannot be assembled.
     pub fn simulate_here(
         &self,
         samples: &[Sample],

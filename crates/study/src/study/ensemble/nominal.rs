@@ -9,7 +9,7 @@ use crate::simulate::{SimulationError, SingularPass};
 /// The nominal motion as bands without width, and the singular configurations that it passes.
 ///
 /// # Errors
-/// Where it cannot be assembled, or constraints contradict one another on the way.
+/// If it cannot be assembled, or constraints contradict one another on the way.
 pub fn nominal(motions: &Motions) -> Result<(MethodResult, Vec<SingularPass>), SimulationError> {
     let outputs = motions.outputs();
     let mut bands = BandBuilder::new(outputs, motions.schedule.rows);

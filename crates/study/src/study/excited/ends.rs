@@ -27,7 +27,7 @@ struct Bent {
 /// Ends of all outputs in all rows, and the motions, which have counted simulations.
 ///
 /// # Errors
-/// Where the nominal motion cannot be simulated, and at an interruption.
+/// If the nominal motion cannot be simulated, and at an interruption.
 pub fn ends<'s, 'm>(
     study: &'s Study<'m>,
     simulator: &'s Simulator,

@@ -34,10 +34,10 @@ pub(super) fn is_excited(study: &Study) -> bool {
     !study.simulator.system.analysis.visits() && study.simulator.system.is_excited
 }
 
-/// Searches the ends of all outputs over all functions; `None` where no excitation acts, and at an interruption.
+/// Searches the ends of all outputs over all functions; `None` if no excitation acts, and at an interruption.
 ///
 /// # Errors
-/// Where the equations cannot be compiled, or the nominal motion cannot be simulated.
+/// If the equations cannot be compiled, or the nominal motion cannot be simulated.
 pub(super) fn excited(study: &Study, schedule: &Schedule) -> Result<Option<(Outcome, FunctionEnds)>, RunError> {
     if !is_excited(study) || study.interruption.is_asked() {
         return Ok(None);

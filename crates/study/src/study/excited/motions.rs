@@ -111,13 +111,13 @@ impl<'s, 'm> ExcitedMotions<'s, 'm> {
     /// Values and gradients.
     ///
     /// # Errors
-    /// Where a sample cannot be assembled, and at an interruption.
+    /// If a sample cannot be assembled, and at an interruption.
     pub fn gradients(&mut self, asked: &[WeightedPoint]) -> Result<Vec<Gradient>, SimulationError> {
         self.count += asked.len();
         self.run(&self.schedule, asked, true)
     }
 
-    /// Values alone, with each step divided into `parts`; NaN where a step does not converge.
+    /// Values alone, with each step divided into `parts`; NaN if a step does not converge.
     ///
     /// # Errors
     /// As for gradients.

@@ -52,7 +52,7 @@ fn example(effect: Option<(&str, &str)>) -> Description {
         .unwrap_or_else(|wrong| panic!("a test loads every example: {}", wrong.render(false)))
 }
 
-/// Cost added by each effect of a model, in file order. `None` where others need it (they use its sensors, or
+/// Cost added by each effect of a model, in file order. `None` if others need it (they use its sensors, or
 /// only it holds something), and for models with too many effects for their size.
 pub fn effect_costs(questions: &Questions, simulator: &Simulator) -> Vec<Option<EffectCost>> {
     let description = questions.description;

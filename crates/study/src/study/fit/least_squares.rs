@@ -21,7 +21,7 @@ pub struct Linearised {
 
 /// Covariance of an estimate in η.
 pub struct Covariance {
-    /// Standard deviations (k); infinite where the data do not determine them.
+    /// Standard deviations (k); infinite if the data do not determine them.
     pub deviations: Vec<f64>,
     /// k × k; zero for undetermined parameters, one in the diagonal.
     pub correlations: Vec<Vec<f64>>,
@@ -40,7 +40,7 @@ pub struct Minimum {
 /// The least sum of squares, from a box on.
 ///
 /// # Errors
-/// Where a box cannot be run.
+/// If a box cannot be run.
 pub fn minimum(
     description: &Description,
     measurements: &Measurements,

@@ -53,7 +53,7 @@ pub enum FitError {
 /// Finds the parameters, within the model's intervals, that agree with measured values.
 ///
 /// # Errors
-/// Where the model cannot be run over its box, and at an interruption.
+/// If the model cannot be run over its box, and at an interruption.
 pub fn fit(description: &Description, measurements: &Measurements, options: &Options) -> Result<Fit, FitError> {
     if description.uncertain().next().is_none() {
         return Err(FitError::NoParameter);

@@ -38,7 +38,7 @@ pub struct Readings<'r> {
 /// A measured row.
 struct Reading {
     output: usize,
-    /// `None` where the motion ends before.
+    /// `None` if the motion ends before.
     interpolation: Option<Interpolation>,
     /// Interpolations from either side, for a model that switches: next to an impact they differ by more than the
     /// noise.
@@ -58,7 +58,7 @@ impl SurrogateRun {
     /// Over a box within the model's.
     ///
     /// # Errors
-    /// Where the model cannot be run, or has no surrogate.
+    /// If the model cannot be run, or has no surrogate.
     pub fn new(
         description: &Description,
         domain: &ParameterBox,
@@ -92,7 +92,7 @@ impl SurrogateRun {
     /// Measured rows.
     ///
     /// # Errors
-    /// Where an output's equations have no finite values at the start.
+    /// If an output's equations have no finite values at the start.
     pub fn readings(&self, measurements: &Measurements) -> Result<Readings<'_>, FitError> {
         let evaluator = self.kept.evaluator().map_err(|error| FitError::Run(error.into()))?;
         let (times, switches) = (self.kept.times(), self.kept.switches());
@@ -122,7 +122,7 @@ impl Readings<'_> {
         self.rows.iter().any(is_flagged)
     }
 
-    /// Errors of simulation and surrogate anywhere in the box, by measured row; infinite where nothing is known.
+    /// Errors of simulation and surrogate anywhere in the box, by measured row; infinite if nothing is known.
     pub fn errors(&self) -> Vec<f64> {
         let of = |reading: &Reading| {
             let Some(interpolation) = &reading.interpolation else { return f64::INFINITY };
@@ -140,7 +140,7 @@ impl Readings<'_> {
         self.rows.iter().map(of).collect()
     }
 
-    /// Values at samples (values of all parameters in their units); NaN where one is not known.
+    /// Values at samples (values of all parameters in their units); NaN if one is not known.
     pub fn at(&self, samples: &[Vec<f64>]) -> ReadValues {
         let mut wanted: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
         for reading in &self.rows {

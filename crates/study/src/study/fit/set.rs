@@ -37,7 +37,7 @@ pub struct Set {
 /// stated errors, but do not make it empty.
 ///
 /// # Errors
-/// Where a narrower box cannot be run.
+/// If a narrower box cannot be run.
 pub fn found(
     description: &Description,
     measurements: &Measurements,
