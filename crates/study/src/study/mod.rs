@@ -94,7 +94,7 @@ pub use verify::{VerifyError, verify};
 pub struct Options<'a> {
     /// Instead of the methods that the model asks for.
     pub methods: Option<Vec<Method>>,
-    /// Threads; all cores where absent.
+    /// Threads; all cores if absent.
     pub threads: Option<usize>,
     /// Whether the time steps' error is found by simulating every sample with halved steps too, instead of a few.
     pub certify_time: bool,
@@ -175,7 +175,7 @@ pub enum RunError {
 /// and the summary's `failure` gives the reason. The same holds if a method panics: the other methods' bounds remain.
 ///
 /// # Errors
-/// Where the mechanism cannot be built, assembled or stepped at all.
+/// If the mechanism cannot be built, assembled or stepped at all.
 pub fn run(description: &Description, options: Options) -> Result<(Bounds, Summary), RunError> {
     let pool = pool(options.threads)?;
     let model = reduced::expanded(description);

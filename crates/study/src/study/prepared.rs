@@ -24,7 +24,7 @@ impl Prepared {
     /// its nominal value.
     ///
     /// # Errors
-    /// Where it cannot be built or assembled.
+    /// If it cannot be built or assembled.
     pub fn new(subsystem: Subsystem) -> Result<Self, RunError> {
         let formulation = subsystem.description.simulation.formulation;
         Self::within(formulation, subsystem)
@@ -70,7 +70,7 @@ pub(super) fn questions(subsystem: &Subsystem) -> Questions<'_> {
 /// Reduces a model to its simulated part, and compiles that.
 ///
 /// # Errors
-/// Where a subsystem cannot be built or assembled.
+/// If a subsystem cannot be built or assembled.
 pub(super) fn prepare(description: &Description, choices: Choices) -> Result<(Reduction, Vec<Prepared>), RunError> {
     let mut reduction = Reduction::of(description, choices);
     let subsystems = std::mem::take(&mut reduction.subsystems).into_iter();

@@ -38,7 +38,7 @@ impl Studied<'_> {
 /// Every refusal comes before the first subsystem is run.
 ///
 /// # Errors
-/// Where a subsystem cannot be built, assembled or bounded; where the run takes long, and nobody has allowed it.
+/// If a subsystem cannot be built, assembled or bounded; if the run takes long, and nobody has allowed it.
 pub(super) fn studied<T>(
     description: &Description,
     options: &Options,
@@ -135,7 +135,7 @@ pub fn ready(description: &Description) -> Result<Ready, RunError> {
 /// Builds a whole model's equations, with the parts that no output depends on: errors there are errors of the model.
 ///
 /// # Errors
-/// Where they cannot be built.
+/// If they cannot be built.
 pub fn built(description: &Description) -> Result<(), RunError> {
     assemble::build(&assemble::Questions::of(description))?;
     Ok(())

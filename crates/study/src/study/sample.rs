@@ -36,7 +36,7 @@ pub struct Sampled {
     pub stopped: usize,
 }
 
-/// Numbers of the columns of a subsystem's lines; `None` where a line is not shown.
+/// Numbers of the columns of a subsystem's lines; `None` if a line is not shown.
 type Columns = Vec<Option<usize>>;
 
 /// A compiled model, and the samples that it is to be simulated at.
@@ -60,7 +60,7 @@ pub struct Trajectories<'t> {
 /// `Trajectories::each`.
 ///
 /// # Errors
-/// Where the mechanism cannot be built or stepped, and those of `write`.
+/// If the mechanism cannot be built or stepped, and those of `write`.
 pub fn sample<T: Send, E: From<RunError> + Send>(
     description: &Description,
     options: &Options,
@@ -148,11 +148,11 @@ fn columns(
 }
 
 impl Trajectories<'_> {
-    /// Simulates all samples. `keep` gets values (sample, row, output) of consecutive samples; NaN where a sample
+    /// Simulates all samples. `keep` gets values (sample, row, output) of consecutive samples; NaN if a sample
     /// cannot be assembled, and from where it stops. `None` after an interruption.
     ///
     /// # Errors
-    /// Where samples cannot be simulated, are deferred to shards, or of `keep`.
+    /// If samples cannot be simulated, are deferred to shards, or of `keep`.
     pub fn each<E: From<RunError>>(&self, mut keep: impl FnMut(&[f64]) -> Result<(), E>) -> Result<Option<Sampled>, E> {
         let steps = self.studies.iter().zip(self.steps);
         let motions: Vec<Motions> = steps.map(|(study, plan)| study.motions(plan.steps(), self.progress)).collect();
@@ -190,12 +190,12 @@ impl Trajectories<'_> {
     /// Also reduces all samples that are simulated from now on.
     ///
     /// # Errors
-    /// Where the nominal motion cannot be assembled.
+    /// If the nominal motion cannot be assembled.
     pub(super) fn plan_reductions(&self) -> Result<(), SimulationError> {
         self.studies.iter().zip(self.steps).try_for_each(|(study, plan)| plan_reduction(study, plan))
     }
 
-    /// Values of `reduced` reduced outputs and then `requirements` requirements, sample by sample; NaN where one is
+    /// Values of `reduced` reduced outputs and then `requirements` requirements, sample by sample; NaN if one is
     /// unknown.
     pub(super) fn numbers(&self, reduced: usize, requirements: usize) -> Vec<f64> {
         let width = reduced + requirements;

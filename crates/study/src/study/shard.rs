@@ -11,7 +11,7 @@ use crate::store::{PartStore, StoreError};
 /// Simulates parts of a model's run that are not in the store yet, by the tasks that are there.
 ///
 /// # Errors
-/// Where the model cannot be compiled, is another one than when the tasks were written, or a part cannot be simulated
+/// If the model cannot be compiled, is another one than when the tasks were written, or a part cannot be simulated
 /// or written.
 pub fn simulate_parts(
     description: &Description,

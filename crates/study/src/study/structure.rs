@@ -20,7 +20,7 @@ use crate::simulate::Assembled;
 /// parts that no output depends on have no start, without them.
 ///
 /// # Errors
-/// Where the mechanism cannot be built or assembled.
+/// If the mechanism cannot be built or assembled.
 pub fn structure(description: &Description) -> Result<(Assembled, Structure), RunError> {
     match of_model(&Questions::of(description)) {
         Err(RunError::Simulation(_)) => of_model(&questions(&Reduction::joined(description))),

@@ -9,7 +9,7 @@ pub struct Threads(Option<ThreadPool>);
 /// the thread that asks for it.
 ///
 /// # Errors
-/// Where they cannot be started.
+/// If they cannot be started.
 pub fn pool(threads: Option<usize>) -> Result<Threads, ThreadPoolBuildError> {
     if cfg!(target_family = "wasm") {
         return Ok(Threads(None));

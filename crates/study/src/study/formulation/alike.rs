@@ -40,7 +40,7 @@ pub fn assembled_alike(questions: &Questions, known: &Simulator) -> Result<Assem
     }
 }
 
-/// The equations for other questions; `None` where the formulation does not allow them.
+/// The equations for other questions; `None` if the formulation does not allow them.
 fn alike(questions: &Questions, known: &FormulationInfo) -> Result<Option<System>, RunError> {
     let FormulationInfo { joint, why, cut, closed_from } = known;
     let questions = questions.cut_at(cut.clone());

@@ -31,7 +31,7 @@ pub use comparison::instructions;
 /// many operations is given up for the other.
 ///
 /// # Errors
-/// Where the mechanism cannot be built or assembled, or takes too many operations in both formulations.
+/// If the mechanism cannot be built or assembled, or takes too many operations in both formulations.
 pub fn compiled(questions: &Questions) -> Result<Simulator, RunError> {
     if questions.formulation != Formulation::Auto {
         return in_shortest_cut(questions, asked(questions)?);

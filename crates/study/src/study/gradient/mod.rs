@@ -45,7 +45,7 @@ pub enum GradientError {
 /// The derivatives, with the steps of a run.
 ///
 /// # Errors
-/// Where there are none, and at an interruption.
+/// If there are none, and at an interruption.
 pub fn gradient(description: &Description, options: &Options) -> Result<Gradients, GradientError> {
     needs_equations(description, "a gradient").map_err(RunError::from)?;
     if description.uncertain().next().is_none() {

@@ -32,7 +32,7 @@ pub struct AlongNominal {
 /// be followed through them, the derivatives are compared with those of halved steps.
 ///
 /// # Errors
-/// Where there are no derivatives, and at an interruption.
+/// If there are no derivatives, and at an interruption.
 pub fn along_nominal(study: &Study, plan: &StepPlan, outputs: &[usize]) -> Result<AlongNominal, GradientError> {
     let between_events = segmented_nominal(study)?;
     let schedule = between_events.as_ref().unwrap_or(&plan.schedule);
@@ -62,7 +62,7 @@ fn followed(study: &Study, schedule: &Schedule, outputs: &[usize]) -> Result<Vec
     self::backwards(study, schedule, outputs)
 }
 
-/// By a jet of the first order; `None` where it stops, or is not finite.
+/// By a jet of the first order; `None` if it stops, or is not finite.
 fn forwards(study: &Study, schedule: &Schedule, outputs: &[usize]) -> Result<Option<Vec<AtRow>>, SimulationError> {
     let space = JetSpace::new(study.domain.dimension(), 1);
     let half_width = vec![1.0; study.domain.dimension()];

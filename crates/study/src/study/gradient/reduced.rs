@@ -167,7 +167,7 @@ fn accumulated<'a>(channel: Channel, curve: &impl Fn(f64) -> Curve<'a>) -> Optio
     })
 }
 
-/// `None` where a reduced output has no derivatives here.
+/// `None` if a reduced output has no derivatives here.
 fn of_reduced<'a>(own: &ReducedOutput, end: f64, curve: &impl Fn(usize, f64) -> Curve<'a>) -> Option<InRows> {
     let (from, to) = (own.from, own.to.min(end));
     let source = *own.outputs.first()?;
@@ -212,7 +212,7 @@ fn of_reduced<'a>(own: &ReducedOutput, end: f64, curve: &impl Fn(usize, f64) -> 
     })
 }
 
-/// The least slack of a requirement on reduced outputs and parameters; `None` where one of those has no derivatives.
+/// The least slack of a requirement on reduced outputs and parameters; `None` if one of those has no derivatives.
 fn of_values(
     own: &Requirement,
     description: &Description,

@@ -29,7 +29,7 @@ pub(super) struct SimulatedForces {
 }
 
 impl SimulatedForces {
-    /// Simulates a model, of which other things are asked too, by the same steps; `None` where forces cannot be
+    /// Simulates a model, of which other things are asked too, by the same steps; `None` if forces cannot be
     /// computed, or there are none.
     pub fn of(description: &Description, others: &MotionRows) -> Option<Self> {
         // Without forces there is no motion that could show them, and not every motion is of forces.

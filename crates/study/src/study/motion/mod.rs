@@ -38,7 +38,7 @@ pub const REPORT_SIZE: usize = TUNING.report_size;
 /// How a motion is found.
 #[derive(Clone, Copy, Debug)]
 pub struct MotionOptions<'a> {
-    /// Threads; all cores where absent. The motion does not depend on them.
+    /// Threads; all cores if absent. The motion does not depend on them.
     pub threads: Option<usize>,
     /// How many numbers of two bytes all poses may come to, about.
     pub size: usize,
@@ -87,7 +87,7 @@ pub fn report_motion(
 /// Simulates the motion of all bodies.
 ///
 /// # Errors
-/// Where the mechanism cannot be built, assembled or stepped, and at an interruption.
+/// If the mechanism cannot be built, assembled or stepped, and at an interruption.
 fn motion(description: &Description, options: MotionOptions) -> Result<Motion, RunError> {
     let pool = pool(options.threads)?;
     pool.install(|| {

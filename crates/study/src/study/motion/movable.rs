@@ -21,7 +21,7 @@ impl<'a> Movable<'a> {
     /// Compiles a model.
     ///
     /// # Errors
-    /// Where the mechanism cannot be built or assembled.
+    /// If the mechanism cannot be built or assembled.
     pub fn new(description: &'a Description, interruption: Interruption<'a>) -> Result<Self, RunError> {
         let posed = Posed::compile(description, None, interruption)?;
         let drawing = posed.drawn(description, None)?;
@@ -37,7 +37,7 @@ impl<'a> Movable<'a> {
     /// of two bytes the poses may come to, about.
     ///
     /// # Errors
-    /// Where the sample cannot be assembled or stepped, and at an interruption.
+    /// If the sample cannot be assembled or stepped, and at an interruption.
     pub fn motion(&self, sample: &Sample, size: usize) -> Result<Motion, RunError> {
         let posed = &self.posed;
         let (times, recorded) = posed.record(self.description, &self.drawing, std::slice::from_ref(sample))?;

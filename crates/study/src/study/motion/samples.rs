@@ -7,7 +7,7 @@ use crate::numerics::{ParameterBox, Sample, SparseGrid, Surrogate, corners, spre
 pub(super) struct Samples {
     /// Those that are shown.
     pub shown: Vec<Sample>,
-    /// How polynomials are made; `None` where no parameter is uncertain, or too many are.
+    /// How polynomials are made; `None` if no parameter is uncertain, or too many are.
     pub surrogate: Option<Surrogate>,
     /// The samples that they are made from.
     pub nodes: Vec<Sample>,

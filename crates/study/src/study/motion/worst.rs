@@ -12,7 +12,7 @@ use crate::study::{RunError, pool};
 /// omitted.
 ///
 /// # Errors
-/// At an interruption, and where threads cannot be had.
+/// At an interruption, and if threads cannot be had.
 pub(super) fn add_worst_motions(
     description: &Description,
     motion: &mut Motion,
@@ -33,7 +33,7 @@ pub(super) fn add_worst_motions(
     })
 }
 
-/// `None` where the functions are none, or the motion does not reach the instant.
+/// `None` if the functions are none, or the motion does not reach the instant.
 fn worst(
     description: &Description,
     motion: &Motion,

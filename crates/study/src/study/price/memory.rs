@@ -27,7 +27,7 @@ pub struct Memory {
 }
 
 impl Memory {
-    /// Memory needed and free, if the studies of a run need more than is free; `None` also where the latter is unknown.
+    /// Memory needed and free, if the studies of a run need more than is free; `None` also if the latter is unknown.
     pub(in crate::study) fn lacking(studies: &[Study]) -> Option<Self> {
         let free = free()?;
         let needed = studies.iter().map(least_bytes).fold(0, u64::saturating_add);

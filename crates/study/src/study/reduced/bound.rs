@@ -29,7 +29,7 @@ use crate::study::stepping::{StepPlan, divided};
 /// Plans the reductions during the motions, by the nominal one.
 ///
 /// # Errors
-/// Where that cannot be assembled.
+/// If that cannot be assembled.
 pub fn plan_reduction(study: &Study, plan: &StepPlan) -> Result<(), SimulationError> {
     let description = study.description;
     if (description.reduced.is_empty() && description.requirements.is_empty()) || study.store.get().is_some() {
@@ -67,7 +67,7 @@ pub fn plan_reduction(study: &Study, plan: &StepPlan) -> Result<(), SimulationEr
 /// Bounds of reduced outputs and verdicts, from the samples of a schedule's bounds.
 ///
 /// # Errors
-/// Where a sample cannot be assembled.
+/// If a sample cannot be assembled.
 pub fn reduced(study: &Study, rows: &Bounded, progress: &Progress) -> Result<Found, SimulationError> {
     let Some(store) = study.store.get() else { return Ok(Found::default()) };
     let begun = Instant::now();

@@ -126,7 +126,7 @@ impl<'a> ReducedEnsemble<'a> {
     /// The motions of samples, cut at the events that they meet, where they are.
     ///
     /// # Errors
-    /// Where a sample cannot be assembled.
+    /// If a sample cannot be assembled.
     pub fn cut(&self, samples: &[Sample]) -> Result<Option<CutMotions>, EnsembleError> {
         self.motions.segments(samples)
     }
@@ -134,7 +134,7 @@ impl<'a> ReducedEnsemble<'a> {
     /// The channels of samples; NaN of those that do not reach the end.
     ///
     /// # Errors
-    /// Where a sample cannot be assembled.
+    /// If a sample cannot be assembled.
     pub fn channels(&self, samples: &[Sample], whole: bool) -> Result<(Vec<Vec<f64>>, Simulated), EnsembleError> {
         let unknown: Vec<Sample> =
             samples.iter().filter(|sample| self.store.get(self.steps, sample).is_none()).cloned().collect();

@@ -21,7 +21,7 @@ pub struct KeptReduced {
 }
 
 impl KeptReduced {
-    /// How far a value may be from the truth anywhere in the box; unknown where it cannot be relied on.
+    /// How far a value may be from the truth anywhere in the box; unknown if it cannot be relied on.
     pub fn value_error(&self, value: usize) -> f64 {
         self.errors[value].decisive(0).unwrap_or(f64::NAN)
     }
@@ -41,7 +41,7 @@ impl KeptReduced {
         together(count, &chunks, samples.len())
     }
 
-    /// How far a requirement's margin may be from the truth anywhere in the box; unknown where it cannot be relied on.
+    /// How far a requirement's margin may be from the truth anywhere in the box; unknown if it cannot be relied on.
     pub fn error(&self, requirement: usize) -> f64 {
         largest(self.values.parts(requirement).map(|part| self.value_error(part)))
     }
@@ -64,7 +64,7 @@ impl KeptReduced {
     }
 
     /// Margins of all `count` requirements at samples of the subsystem's box, requirement by requirement, sample by
-    /// sample; NaN where one is unknown. In parallel, with the same bits for any number of threads.
+    /// sample; NaN if one is unknown. In parallel, with the same bits for any number of threads.
     pub fn margins<P: AsRef<[f64]> + Sync>(&self, count: usize, samples: &[P]) -> Vec<f64> {
         let first = if count == 0 { self.values.count() } else { self.values.parts(0).start };
         let wanted: Vec<usize> = (first..self.values.count()).collect();

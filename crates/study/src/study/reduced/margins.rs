@@ -29,7 +29,7 @@ pub struct ReducedValues<'k> {
 }
 
 impl<'k> ReducedValues<'k> {
-    /// All `count` reduced outputs, from these parts; `None` where one is of none.
+    /// All `count` reduced outputs, from these parts; `None` if one is of none.
     pub fn of(parts: Vec<MarginsOfPart<'k>>, count: usize) -> Option<Self> {
         let index = |number: usize| {
             let own = |part: &MarginsOfPart| part.reduced.iter().position(|&own| own == number);
@@ -39,7 +39,7 @@ impl<'k> ReducedValues<'k> {
         Some(Self { parts, indices })
     }
 
-    /// How far one may be from the truth anywhere in the box; unknown where it cannot be relied on.
+    /// How far one may be from the truth anywhere in the box; unknown if it cannot be relied on.
     pub fn error(&self, number: usize) -> f64 {
         let (part, own) = self.indices[number];
         self.parts[part].kept.value_error(own)
@@ -51,7 +51,7 @@ impl<'k> ReducedValues<'k> {
         self.parts[part].kept.time_error(own..own + 1)
     }
 
-    /// Values at samples of the model's box, one after the other; NaN where one is unknown.
+    /// Values at samples of the model's box, one after the other; NaN if one is unknown.
     pub fn values<P: AsRef<[f64]> + Sync>(&self, samples: &[P]) -> Vec<Vec<f64>> {
         let found: Vec<Vec<f64>> =
             self.parts.iter().map(|part| part.kept.values(part.reduced.len(), &part.own(samples))).collect();
@@ -101,7 +101,7 @@ impl<'k> Margins<'k> {
         self.indices.len()
     }
 
-    /// How far a margin may be from the truth anywhere in the box; unknown where it cannot be relied on.
+    /// How far a margin may be from the truth anywhere in the box; unknown if it cannot be relied on.
     pub fn error(&self, requirement: usize) -> f64 {
         let (part, own) = self.indices[requirement];
         self.parts[part].kept.error(own)
@@ -120,7 +120,7 @@ impl<'k> Margins<'k> {
         kept.time_error(kept.values.parts(own))
     }
 
-    /// Margins at samples of the model's box, requirement by requirement, sample by sample; NaN where one is unknown.
+    /// Margins at samples of the model's box, requirement by requirement, sample by sample; NaN if one is unknown.
     pub fn values<P: AsRef<[f64]> + Sync>(&self, samples: &[P]) -> Vec<f64> {
         let of_part = |part: &MarginsOfPart| part.kept.margins(part.requirements.len(), &part.own(samples));
         let found: Vec<Vec<f64>> = self.parts.iter().map(of_part).collect();

@@ -146,7 +146,7 @@ impl<'a> Instants<'a> {
         Ok(is_known.then_some(own))
     }
 
-    /// The events of samples; `None` where their motions cannot be cut.
+    /// The events of samples; `None` if their motions cannot be cut.
     fn found(&self, samples: &[Sample]) -> Result<Option<Found>, EnsembleError> {
         let (channels, _) = self.values.channels(samples, false)?;
         let mut words = vec![if self.is_cut { None } else { Some((0, Vec::new())) }; samples.len()];

@@ -102,7 +102,7 @@ impl ChannelValues {
         self.margins[requirement].clone()
     }
 
-    /// A requirement's margin, given all values; NaN where a part is unknown.
+    /// A requirement's margin, given all values; NaN if a part is unknown.
     pub fn margin(&self, requirement: usize, value: impl Fn(usize) -> f64) -> f64 {
         self.parts(requirement).map(value).fold(f64::INFINITY, |a, b| if b < a || b.is_nan() { b } else { a })
     }

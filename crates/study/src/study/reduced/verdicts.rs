@@ -22,7 +22,7 @@ fn smaller(a: f64, b: f64) -> f64 {
 /// The verdict of each requirement.
 ///
 /// # Errors
-/// Where a sample cannot be assembled, and at an interruption.
+/// If a sample cannot be assembled, and at an interruption.
 pub fn verdicts(
     study: &Study,
     values: &Evaluated,

@@ -11,7 +11,7 @@ use crate::study::Options;
 /// Statistics of the first outputs, by simulated motions.
 ///
 /// # Errors
-/// In words, where motions cannot be simulated.
+/// In words, if motions cannot be simulated.
 pub(super) fn of_motions(
     description: &Description,
     shown: usize,
@@ -41,7 +41,7 @@ pub(super) fn of_motions(
     Ok(found)
 }
 
-/// By row, an output's linear sum and root sum square about the nominal values; `None` where its derivatives are
+/// By row, an output's linear sum and root sum square about the nominal values; `None` if its derivatives are
 /// unknown, or parameters lie in zones, which have other deviations than each of them.
 fn stacks(description: &Description, bounds: &Bounds, name: &str) -> Option<Vec<(f64, f64)>> {
     let own = bounds.derivatives.iter().find(|own| bounds.outputs[own.output].name == name)?;

@@ -30,7 +30,7 @@ impl Laws {
     /// Those of a model.
     ///
     /// # Errors
-    /// Where nothing is uncertain.
+    /// If nothing is uncertain.
     pub fn of(description: &Description) -> Result<Self, String> {
         let all: Vec<(&str, [f64; 3])> = intervals(description).collect();
         if all.is_empty() {

@@ -178,7 +178,7 @@ fn side_by_side(
 /// A model's laws, as far as they reach.
 ///
 /// # Errors
-/// Where nothing is uncertain.
+/// If nothing is uncertain.
 pub(super) fn laws(description: &Description) -> Result<Laws, String> {
     let mut laws = Laws::of(description)?;
     laws.widen();

@@ -31,7 +31,7 @@ const TOGETHER: &str = "all requirements";
 /// Statistics of the first outputs, reduced outputs and requirements, by simulated motions.
 ///
 /// # Errors
-/// In words, where motions cannot be simulated.
+/// In words, if motions cannot be simulated.
 pub(super) fn of_motions(
     description: &Description,
     shown: usize,

@@ -91,7 +91,7 @@ impl Products {
         std::iter::once(share).chain(pairs)
     }
 
-    /// An output in a row, given these values of its surrogate at the samples; `None` where it was not simulated there.
+    /// An output in a row, given these values of its surrogate at the samples; `None` if it was not simulated there.
     /// A product that cannot be simulated leaves all unknown.
     pub fn of_output(&self, row: usize, output: usize, surrogate: &[f64]) -> Option<ControlVariate> {
         if row >= self.rows || output >= self.outputs {

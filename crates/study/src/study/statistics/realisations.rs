@@ -66,7 +66,7 @@ impl Realisations {
 /// Simulates a subsystem at samples of all parameters; `None` after an interruption.
 ///
 /// # Errors
-/// Where a sample cannot be assembled.
+/// If a sample cannot be assembled.
 pub(super) fn realisations(
     study: &Study,
     subsystem: &Subsystem,

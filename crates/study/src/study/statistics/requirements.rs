@@ -145,7 +145,7 @@ impl<'a> Together<'a> {
         self.scales.push(scale);
     }
 
-    /// The share that fulfils them, given their margins as functions; `None` where an error is unknown.
+    /// The share that fulfils them, given their margins as functions; `None` if an error is unknown.
     fn summary(&self, margins: &reduced::Margins) -> Option<YieldSummary> {
         if self.errors.iter().any(|error| !error.is_finite()) {
             return None;

@@ -43,7 +43,7 @@ impl<'a> Rows<'a> {
     /// Draws the samples.
     ///
     /// # Errors
-    /// Where a loop closure cannot be compiled.
+    /// If a loop closure cannot be compiled.
     pub fn new(
         description: &'a Description,
         options: &'a Options<'a>,
@@ -62,7 +62,7 @@ impl<'a> Rows<'a> {
     /// With errors from simulations at samples of the laws, where the surrogate is not within the tolerance.
     ///
     /// # Errors
-    /// Where these cannot be simulated.
+    /// If these cannot be simulated.
     pub fn with_products(self, outputs: usize) -> Result<Self, String> {
         let products = Products::of(self.description, self.options, self.laws, self.kept, outputs);
         Ok(Self { products: products.map_err(|error| error.to_string())?, ..self })

@@ -26,7 +26,7 @@ pub(super) fn sensitivities(rows: &Rows, row: usize, output: usize) -> Vec<Sensi
     found
 }
 
-/// How the samples of an output are distributed; `None` where they are all the same, or unknown.
+/// How the samples of an output are distributed; `None` if they are all the same, or unknown.
 pub(super) fn histogram(rows: &Rows, row: usize, output: usize) -> Option<Histogram> {
     let is_own = rows.own_error(row, output, rows.kept.error(output).total[row]).is_some();
     let values: Vec<f64> =

@@ -10,7 +10,7 @@ use crate::numerics::clock::Instant;
 use crate::results::MethodSummary;
 use crate::simulate::{Integration, SimulationError, Steps, unmet_switch};
 
-/// Searches the box for them; `None` where the equations have none.
+/// Searches the box for them; `None` if the equations have none.
 pub fn switches(
     study: &Study,
     steps: Steps<'_>,

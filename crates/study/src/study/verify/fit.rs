@@ -16,7 +16,7 @@ pub struct Nominal {
     pub states: Vec<Vec<f64>>,
 }
 
-/// Through values of several functions at nodes, without rounding; `None` where one is not resolved. Functions are
+/// Through values of several functions at nodes, without rounding; `None` if one is not resolved. Functions are
 /// compared with the largest of their group: states may be of any size.
 pub fn series(
     span: [f64; 2],
@@ -57,7 +57,7 @@ fn range(values: &[f64]) -> (f64, f64) {
     values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), &own| (least.min(own), most.max(own)))
 }
 
-/// Polynomials for q, v and λ over a time, with a swing as a share of scales; `None` where they are farther from the
+/// Polynomials for q, v and λ over a time, with a swing as a share of scales; `None` if they are farther from the
 /// motion than a share of its range, if there is one.
 pub fn followed(
     nominal: &Nominal,

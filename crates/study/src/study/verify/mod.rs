@@ -98,7 +98,7 @@ pub enum VerifyError {
 /// Verifies a model in all formulations that it has, by all ways to integrate it.
 ///
 /// # Errors
-/// Where the model cannot be built or assembled, and at an interruption.
+/// If the model cannot be built or assembled, and at an interruption.
 pub fn verify(description: &Description, options: &Options) -> Result<Verification, VerifyError> {
     needs_mechanism(description, "a verification").map_err(RunError::from)?;
     match description.analysis {

@@ -105,7 +105,7 @@ impl<'s> EquationsAtPoint<'s> {
         DVector::from_iterator(self.kept.len(), self.kept.iter().map(gap))
     }
 
-    /// Moves positions onto the constraints; `None` where Newton's method does not get there.
+    /// Moves positions onto the constraints; `None` if Newton's method does not get there.
     fn closed(&mut self, time: f64, q: &mut [f64]) -> Option<()> {
         if self.kept.is_empty() {
             return Some(());
@@ -129,7 +129,7 @@ impl<'s> EquationsAtPoint<'s> {
         (before < least).then_some(())
     }
 
-    /// The shortest change of positions by which the constraints change so much, to first order; `None` where the
+    /// The shortest change of positions by which the constraints change so much, to first order; `None` if the
     /// position is singular.
     fn shortest(&mut self, gaps: &DVector<f64>) -> Option<DVector<f64>> {
         let coordinates = &self.system.coordinates;
@@ -211,7 +211,7 @@ impl Manufactured {
     /// halvings.
     ///
     /// # Errors
-    /// Where no part of it has a smooth motion on the constraints, or its equations are not smooth along it.
+    /// If no part of it has a smooth motion on the constraints, or its equations are not smooth along it.
     pub fn near(
         nominal: &Nominal,
         equations: &mut EquationsAtPoint,

@@ -70,7 +70,7 @@ fn groups<'m>(system: &System, motion: &'m Manufactured) -> Vec<Group<'m>> {
 /// are those of rounding, or a row has the most steps.
 ///
 /// # Errors
-/// Where the system cannot be started, or a step does not converge however short it is.
+/// If the system cannot be started, or a step does not converge however short it is.
 pub fn convergence(
     simulator: &Simulator,
     motion: &Manufactured,
@@ -107,7 +107,7 @@ pub fn convergence(
     Ok(found)
 }
 
-/// All outputs row by row; `None` where a step does not converge.
+/// All outputs row by row; `None` if a step does not converge.
 fn simulated(
     simulator: &Simulator,
     nominal: &Sample,
