@@ -85,7 +85,7 @@ impl Table {
         Ok(())
     }
 
-    /// At the end of the table: points that lack rows say how many they have.
+    /// Ends the table: points that lack rows get an error with the number of their rows.
     pub fn end(&self, questions: &Questions, answers: &mut Answers) {
         let wanted = questions.times.len();
         for (point, rows) in self.rows.iter().enumerate().filter(|(_, rows)| !rows.is_empty()) {

@@ -1,4 +1,4 @@
-//! How processes of a program are started.
+//! Start of processes of a program.
 
 use std::path::PathBuf;
 use std::process::Command;
@@ -11,7 +11,7 @@ use crate::model::Program;
 /// The command of mbint that answers for a unit of FMI.
 const ANSWER: &str = "answer-fmu";
 
-/// How processes of a program are started.
+/// Starts processes of a program.
 #[derive(Debug)]
 pub(super) struct Launch {
     program: Program,

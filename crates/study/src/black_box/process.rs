@@ -106,7 +106,7 @@ impl Process {
                 _ => break,
             }
         }
-        // Where it cannot be ended it has ended.
+        // If it cannot be ended, it has ended already.
         let _ = self.child.kill();
         self.child.wait().map_or_else(|error| error.to_string(), |status| status.to_string())
     }

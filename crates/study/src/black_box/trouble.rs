@@ -9,7 +9,7 @@ pub enum Trouble {
     /// The process ended.
     #[error("the program ended ({status}) without an answer{words}")]
     Ended {
-        /// How, for people.
+        /// Exit status, for people.
         status: String,
         /// Its last words.
         words: Words,
@@ -57,9 +57,9 @@ pub enum Trouble {
     Rows {
         /// For people: ``rows of `x` ``.
         name: String,
-        /// How many there are.
+        /// Number of rows found.
         found: usize,
-        /// How many there should be.
+        /// Number of rows wanted.
         wanted: usize,
     },
     /// A row is of another time.

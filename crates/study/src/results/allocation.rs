@@ -6,7 +6,7 @@ use crate::grammar::display_unit::DisplayUnit;
 
 use super::{RequirementSummary, YieldSummary};
 
-/// How a requirement counts for tolerances.
+/// Criterion by which a requirement limits tolerances.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Criterion {
@@ -70,7 +70,7 @@ pub struct NotMet {
     pub display: Option<DisplayUnit>,
     /// Its margin with the tightest tolerances: negative.
     pub margin: f64,
-    /// How far that may be off.
+    /// Error of the margin.
     pub error: f64,
 }
 
@@ -88,7 +88,7 @@ pub struct TradePoint {
 pub struct Allocation {
     /// Name of the model.
     pub model: String,
-    /// How requirements count.
+    /// Criterion of the requirements.
     pub criterion: Criterion,
     /// By parameter.
     pub tolerances: Vec<AllocatedTolerance>,
@@ -114,10 +114,10 @@ pub struct Allocation {
     pub simulations: usize,
     /// Simulations of the studies that confirm.
     pub confirming: usize,
-    /// How far the surrogate's margins may be off, as the largest share of a nominal margin; `None` of many
-    /// parameters, where that says nothing of the boxes that are chosen.
+    /// Largest error of the surrogate's margins, as a share of a nominal margin; `None` with many parameters, where it
+    /// gives no information about the boxes that are chosen.
     pub surrogate_error: Option<f64>,
-    /// How many times the model's tolerances the surrogate reaches, at most.
+    /// Largest multiple of the model's tolerances that the surrogate reaches.
     pub widest: f64,
 }
 

@@ -23,7 +23,7 @@ pub struct AnalysisSummary {
     /// Coordinates that may have any value at the equilibrium.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub indifferent: Vec<String>,
-    /// Where there is one configuration: its bounds.
+    /// Bounds of the outputs, if there is one configuration.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub values: Vec<ValueSummary>,
 }

@@ -123,12 +123,12 @@ pub struct Band {
     pub lower: Vec<f64>,
     /// Upper bound at each time, in the output's SI unit; NaN if unknown.
     pub upper: Vec<f64>,
-    /// How far the bounds may be from the truth, at each time.
+    /// Error of the bounds, at each time.
     pub error: BandError,
 }
 
 impl OutputBounds {
-    /// The same over `rows` rows, unknown where these have none.
+    /// The same over `rows` rows; the additional rows are unknown.
     #[must_use]
     pub fn padded(&self, rows: usize) -> Self {
         let band = |band: &Band| Band {
@@ -151,7 +151,7 @@ impl OutputBounds {
 }
 
 impl Contribution {
-    /// The same over `rows` rows, unknown where these have none.
+    /// The same over `rows` rows; the additional rows are unknown.
     #[must_use]
     pub fn padded(&self, rows: usize) -> Self {
         Self {

@@ -18,13 +18,13 @@ pub struct Decision {
 /// some.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Saving {
-    /// How many.
+    /// Number of instructions.
     pub instructions: i64,
-    /// How often they would be run.
+    /// Frequency of the instructions.
     pub each: Each,
 }
 
-/// How often instructions are run.
+/// Frequency of instructions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Each {

@@ -60,7 +60,7 @@ pub struct DesignPoint {
     pub nominal: f64,
     /// The objective in the worst case, or its quantile for a share of the production.
     pub worst: f64,
-    /// How far that may be from the truth.
+    /// Error of `worst`.
     pub error: f64,
     /// Verdicts of the study.
     pub requirements: Vec<RequirementSummary>,
@@ -91,7 +91,7 @@ pub struct DesignProfile {
 pub struct DesignTrade {
     /// The least margin of all requirements, as a share of its limit: in the worst case, or its quantile.
     pub margin: f64,
-    /// How far that may be from the truth.
+    /// Error of `margin`.
     pub error: f64,
     /// Cost of the tolerances.
     pub cost: f64,
@@ -113,7 +113,7 @@ pub struct DesignStudy {
     pub model: String,
     /// Objective.
     pub objective: DesignObjective,
-    /// How requirements and objective count.
+    /// Criterion of requirements and objective.
     pub criterion: Criterion,
     /// Free parameters.
     pub parameters: Vec<DesignParameter>,
@@ -151,7 +151,7 @@ impl DesignStudy {
         self.objective.text == "cost"
     }
 
-    /// By how much the worst case is better than that of the nominal optimum, as a share of that.
+    /// Gain of the worst case over that of the nominal optimum, as a share of the latter.
     pub fn gain(&self) -> Option<f64> {
         let (best, nominal) = (self.best()?, self.nominal_point.as_ref()?);
         // Tolerances that miss the requirements have a cost, too.

@@ -51,7 +51,7 @@ pub struct DrawnBody {
 pub struct DrawnPoint {
     /// Its name; empty for the frame's origin.
     pub name: String,
-    /// Where it is.
+    /// Its position.
     pub position: [f64; 3],
 }
 

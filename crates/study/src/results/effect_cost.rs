@@ -41,8 +41,8 @@ impl std::ops::Add for StepInstructions {
 /// Instructions that one effect adds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct EffectCost {
-    /// Where it acts.
+    /// Cost while it acts.
     pub active: StepInstructions,
-    /// Where it and its like touch nothing in any sample of a tile; absent if it always acts.
+    /// Cost while it and its like touch nothing in any sample of a tile; absent if it always acts.
     pub inactive: Option<StepInstructions>,
 }

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use crate::grammar::display_unit::DisplayUnit;
 
-/// How far an output is moved: half of the largest width of its bounds.
+/// Displacement of an output by excitations: half of the largest width of its bounds.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ExcitationSummary {
     /// Name of the output.

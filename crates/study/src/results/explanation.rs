@@ -10,12 +10,12 @@ use super::effect_cost::EffectCost;
 pub struct Explanation {
     /// The model's name.
     pub model: String,
-    /// In how many dimensions it moves, and why: `planar: nothing leaves the plane`.
+    /// Number of dimensions and reason: `planar: nothing leaves the plane`.
     pub space: String,
     /// Analysis, unless it is a motion: `statics: …`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub analysis: Option<String>,
-    /// By which coordinates, and why: `joint coordinates: 148 instructions a step instead of 187`.
+    /// Formulation and reason: `joint coordinates: 148 instructions a step instead of 187`.
     pub formulation: String,
     /// Coordinates by name, e.g. `crank.angle`, in the order of the unknowns.
     pub coordinates: Vec<String>,
@@ -38,9 +38,9 @@ pub struct Explanation {
     pub effects: Vec<EffectExplanation>,
     /// Outputs by name.
     pub outputs: Vec<String>,
-    /// How the work is divided; where effects act only sometimes, with all of them active.
+    /// Instructions by part; if effects act only sometimes, with all of them active.
     pub instructions: InstructionCounts,
-    /// The same where none of them acts in any sample of a tile, if that is less.
+    /// Instructions while none of them acts in any sample of a tile, if that is less.
     pub inactive: Option<InstructionCounts>,
     /// The matrix of Newton's method.
     pub newton: NewtonMatrix,
@@ -112,7 +112,7 @@ pub struct NewtonMatrix {
     pub nonzeros: usize,
     /// Entries of L and U together, the diagonal once.
     pub factor_nonzeros: usize,
-    /// Those of the factors that the matrix does not have.
+    /// Entries of the factors that the matrix does not have.
     pub fill: usize,
     /// (row, column) in the order of elimination, counted from 0.
     pub pivots: Vec<(usize, usize)>,

@@ -14,7 +14,7 @@ pub struct GradientParameter {
     /// The unit in which people see it, if the model names one.
     #[serde(skip)]
     pub display: Option<DisplayUnit>,
-    /// Where the derivatives are taken, SI.
+    /// Value at which the derivatives are taken, SI.
     pub value: f64,
     /// Half the width of its interval, SI.
     pub half_width: f64,

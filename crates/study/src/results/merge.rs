@@ -1,4 +1,4 @@
-//! How results of parts become those of a whole, field by field: of a model's subsystems, and of pieces of its box.
+//! Merges results of parts into those of a whole, field by field: of a model's subsystems, and of pieces of its box.
 
 use super::summary::MethodSummary;
 use super::{Band, Bounds, EffectCost, Explanation, InstructionCounts, LeftOut, OutputBounds, Summary};

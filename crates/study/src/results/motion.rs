@@ -1,4 +1,4 @@
-//! How the bodies of a mechanism move: at the nominal parameters, at samples of the box, and as polynomials in the
+//! Motion of the bodies of a mechanism: at the nominal parameters, at samples of the box, and as polynomials in the
 //! parameters.
 
 use super::{Drawing, ParameterSummary};
@@ -15,8 +15,8 @@ pub struct Motion {
     pub times: Vec<f64>,
     /// Number of simulated rows that the times were chosen from.
     pub rows: usize,
-    /// How far a point of a body is, at a simulated row, from where straight lines between the chosen poses have it, m:
-    /// at most, over all bodies, samples and rows.
+    /// Largest distance of a point of a body, at a simulated row, from the straight lines between the chosen poses, m:
+    /// over all bodies, samples and rows.
     pub between: f64,
     /// Numbers of a body's pose: 3 in the plane, 7 in space.
     pub per_body: usize,
@@ -36,7 +36,7 @@ pub struct Motion {
     pub polynomials: Option<MotionPolynomials>,
 }
 
-/// Where the bodies are at each time, and their points in their own frames.
+/// Poses of the bodies at each time, and their points in their own frames.
 #[derive(Clone, Debug, Default)]
 pub struct Poses {
     /// (time, coordinate of the pose)

@@ -66,7 +66,7 @@ impl Peak {
     }
 }
 
-/// How much higher than a row the curve may be on either side of it.
+/// Possible excess of the curve over a row, on either side of it.
 fn between(values: &[f64], row: usize) -> f64 {
     let last = values.len().saturating_sub(1);
     if last < 2 {

@@ -41,7 +41,7 @@ pub struct ReducedBand {
     pub lower: f64,
     /// Upper bound.
     pub upper: f64,
-    /// How far the bounds may be from the truth.
+    /// Error of the bounds.
     pub error: f64,
     /// The part of the error that is due to the method.
     pub surrogate: f64,
@@ -73,7 +73,7 @@ pub struct WorstCase {
     pub value: f64,
 }
 
-/// How many samples have a value.
+/// Number of samples that have a value.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Occurrence {
     /// Number of samples with a value.

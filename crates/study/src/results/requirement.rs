@@ -43,13 +43,12 @@ pub struct RequirementSummary {
     pub verdict: Verdict,
     /// Whether certified bounds prove the verdict.
     pub certified: bool,
-    /// How far the bounds keep from the limit over the whole box: negative where they pass it. The truth is within
-    /// `error`.
+    /// Distance of the bounds from the limit over the whole box: negative if they pass it. The truth is within `error`.
     pub margin: f64,
     /// The margin in percent of the limit; absent if the limit is zero or no constant.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub percent: Option<f64>,
-    /// How far the margin may be from the truth.
+    /// Error of the margin.
     pub error: f64,
     /// The part of the error that is due to the method.
     pub surrogate: f64,
@@ -73,9 +72,9 @@ pub struct RequirementSummary {
 pub struct NearestCase {
     /// Values of the uncertain parameters in the summary's order, SI.
     pub parameters: Vec<f64>,
-    /// Its margin: negative where it fails.
+    /// Its margin: negative if it fails.
     pub margin: f64,
-    /// How far its margin may be from the truth, by its time steps.
+    /// Error of its margin due to the time steps.
     pub error: f64,
     /// When it is nearest, s; absent without a time.
     #[serde(skip_serializing_if = "Option::is_none")]

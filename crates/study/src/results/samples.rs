@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-/// How samples are written.
+/// File format of samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SampleFormat {
     /// An archive of NumPy's arrays.

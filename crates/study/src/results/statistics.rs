@@ -10,9 +10,9 @@ use crate::grammar::display_unit::DisplayUnit;
 pub struct Uncertain {
     /// The estimate.
     pub value: f64,
-    /// Half width of its 95 % confidence interval as far as the number of samples goes.
+    /// Half width of its 95 % confidence interval due to the number of samples.
     pub sampling: f64,
-    /// How far the surrogate and the time steps may leave it off.
+    /// Possible error due to the surrogate and the time steps.
     pub error: f64,
 }
 
@@ -60,7 +60,7 @@ pub struct LawSummary {
     pub deviation: f64,
     /// Whether the tolerance is taken for three standard deviations, since nothing else is said.
     pub tolerance_is_three_sigma: bool,
-    /// How much of the law lies outside of the interval that is bounded.
+    /// Probability outside the interval that is bounded.
     pub outside: f64,
 }
 
@@ -89,22 +89,22 @@ pub struct StatisticsSummary {
     pub quantiles: Vec<f64>,
     /// Probability outside the domain of the surrogate; samples are drawn from the rest.
     pub left_out: f64,
-    /// How much of the laws lies outside of the box that is bounded, at most.
+    /// Largest probability outside the box that is bounded.
     pub outside: f64,
-    /// Simulations for a surrogate beyond the box, where laws reach beyond it.
+    /// Simulations for a surrogate beyond the box, if laws reach beyond it.
     pub simulations: usize,
     /// Number of simulated products, if the errors are determined by them.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub products: Option<usize>,
-    /// By output, where it varies most.
+    /// By output, at the time at which it varies most.
     pub outputs: Vec<OutputStatisticsSummary>,
     /// Reduced outputs.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub reduced: Vec<NumberStatistics>,
-    /// How many fulfil each requirement.
+    /// Share that fulfils each requirement.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub requirements: Vec<YieldSummary>,
-    /// The same of all requirements together, where there are several.
+    /// The same for all requirements together, if there are several.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub together: Option<YieldSummary>,
     /// Under random excitations: motions are the samples.
@@ -161,7 +161,7 @@ pub struct OutputStatisticsSummary {
     pub histogram: Option<Histogram>,
 }
 
-/// How an output follows a parameter about the nominal values. SI.
+/// Sensitivity of an output to a parameter about the nominal values. SI.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Sensitivity {
     /// Name of the parameter.
@@ -177,9 +177,9 @@ pub struct Sensitivity {
 /// Shares of samples in intervals of equal width.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Histogram {
-    /// Where the first interval begins, SI.
+    /// Lower end of the first interval, SI.
     pub lower: f64,
-    /// Where the last one ends, SI.
+    /// Upper end of the last interval, SI.
     pub upper: f64,
     /// Interval by interval; their sum is 1.
     pub shares: Vec<f64>,

@@ -5,7 +5,7 @@ use serde::Serialize;
 /// Mobility, size, mass and loads of a mechanism.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Structure {
-    /// How free it is to move.
+    /// Its mobility.
     pub mobility: MobilityCount,
     /// Extent of all bodies and points along x, y and z at the start, m.
     pub size: [f64; 3],
@@ -60,6 +60,6 @@ pub struct MassRange {
 pub struct KindCount {
     /// The word for it in a model file.
     pub kind: &'static str,
-    /// How many.
+    /// Number of elements.
     pub count: usize,
 }

@@ -20,7 +20,7 @@ pub struct Summary {
     pub model: String,
     /// Version of this package.
     pub mbint: String,
-    /// Which coordinates: `absolute`, `joint`, or `absolute and joint` where subsystems differ.
+    /// The coordinates: `absolute`, `joint`, or `absolute and joint` if subsystems differ.
     pub formulation: String,
     /// Number of coordinates.
     pub coordinates: usize,
@@ -42,29 +42,29 @@ pub struct Summary {
     /// Singular configurations that the nominal motion passes.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub singular_configurations: Vec<SingularSummary>,
-    /// A fast mode that the start excites and the steps damp, where that moves an output.
+    /// A fast mode that the start excites and the steps damp, if it moves an output.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub damped_mode: Option<DampedMode>,
     /// Events that a part of the box meets: bounds are divided where one is just grazed.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub events: Vec<EventSummary>,
-    /// The time up to which events are followed, where that is before the end of the rows.
+    /// The time up to which events are followed, if it is before the end of the rows.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub events_followed: Option<EventsFollowed>,
-    /// From when on some parameter values meet a contact, a stop or a kink that no sample meets, s.
+    /// First time at which some parameter values meet a contact, a stop or a kink that no sample meets, s.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub unmet_switch: Option<f64>,
     /// First time at which fixed steps pass over a change of a force in time or in space, s.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub passed_force: Option<f64>,
-    /// Contacts whose surfaces overlap at the start, where other forces do not press them together.
+    /// Contacts whose surfaces overlap at the start, unless other forces press them together.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub overlaps_at_start: Vec<StartOverlap>,
     /// The first surfaces that a contact does not hold apart any more, in any sample.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub too_deep: Option<TooDeep>,
-    /// How many times the tolerance the local errors of a sample's steps add up to, where that is more than once: rows
-    /// that need the sample are unresolved.
+    /// Sum of the local errors of a sample's steps, in multiples of the tolerance, if that is more than 1: rows that
+    /// need the sample are unresolved.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub beyond_tolerance: Option<f64>,
     /// The integration method, unless it was HHT-I3 alone.
@@ -98,7 +98,7 @@ pub struct Summary {
     /// Random excitations, of which bounds of a motion have one realisation.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub realisations: Vec<String>,
-    /// Which tolerance matters: output by output, the parameters that contribute most first.
+    /// Contributions of tolerances: output by output, the parameters that contribute most first.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub contributions: Vec<ContributionSummary>,
     /// Outputs that are one number a motion.
@@ -107,10 +107,10 @@ pub struct Summary {
     /// Requirements with their verdicts.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub requirements: Vec<RequirementSummary>,
-    /// How the outputs are distributed, where that was asked.
+    /// Distributions of the outputs, if requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub statistics: Option<Box<StatisticsResult>>,
-    /// Where only a part of the box is bounded: the pieces that are, with how far in time.
+    /// If only a part of the box is bounded: the bounded pieces, with the time up to which each is.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub pieces: Vec<PieceSummary>,
     /// Parts of the model that no output depends on: `body pendulum`.
@@ -169,7 +169,7 @@ pub struct ParameterSummary {
     pub name: String,
     /// Its SI unit; empty if none is known.
     pub unit: String,
-    /// The unit in which people see it, where the model writes it in another.
+    /// The unit in which people see it, if the model writes it in another.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub display: Option<DisplayUnit>,
     /// Nominal value.
@@ -274,10 +274,10 @@ pub struct MethodSummary {
     pub newton_iterations: u64,
     /// Steps that fell back to the dense rank-revealing solve.
     pub rank_revealing_solves: u64,
-    /// Highest degree in each parameter, where a tolerance decided.
+    /// Highest degree in each parameter, if a tolerance determined it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub order: Option<Vec<usize>>,
-    /// How many boxes the parameters' was split into, where a tolerance decided.
+    /// Number of boxes into which the parameters' was split, if a tolerance determined it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub boxes: Option<usize>,
     /// Outputs that at some time do not follow from the coordinates, and were expanded themselves there.

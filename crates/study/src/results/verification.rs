@@ -120,7 +120,7 @@ pub struct PowerBalance {
 }
 
 impl EffectBalance {
-    /// With the power at one more instant, and the rate at which energy is stored.
+    /// Adds the power at one more instant, and the rate at which energy is stored.
     pub fn add(&mut self, power: f64, stored: f64) {
         self.power = larger(self.power, power.abs());
         self.put_in = larger(self.put_in, power + stored);
@@ -149,9 +149,9 @@ impl PowerBalance {
 /// Derivatives of a program against differences with twice the digits.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct DerivativeCheck {
-    /// Which rows.
+    /// The rows that are differentiated.
     pub of: String,
-    /// By which variables.
+    /// The variables of the derivatives.
     pub by: String,
     /// Number of derivatives at one point.
     pub derivatives: usize,
@@ -160,7 +160,7 @@ pub struct DerivativeCheck {
 }
 
 impl DerivativeCheck {
-    /// With the largest difference at one more point.
+    /// Adds the largest difference at one more point.
     pub fn add(&mut self, difference: f64) {
         self.difference = larger(self.difference, difference);
     }
@@ -213,7 +213,7 @@ impl Convergence {
         Self { quantity, theory, rounding, ..Self::default() }
     }
 
-    /// With the error of shorter steps, by half.
+    /// Adds the error of steps half as long.
     pub fn add(&mut self, step: f64, error: f64) {
         if let Some((_, before)) = self.errors.last() {
             self.orders.push(math::log2(before / error));

@@ -26,7 +26,7 @@ pub use task::{ScanPart, Task};
 /// Version of the files of parts and tasks. Files of another version are not read.
 pub const FORMAT: u32 = 1;
 
-/// Action where a part is missing.
+/// Action if a part is missing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Missing {
     /// It is simulated and stored.
@@ -64,7 +64,7 @@ pub struct PartStore {
 /// Number and size of the parts in a folder, of any run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Content {
-    /// How many.
+    /// Number of parts.
     pub parts: usize,
     /// Their size.
     pub bytes: u64,

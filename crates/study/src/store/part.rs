@@ -89,7 +89,7 @@ impl PartWriter {
 #[derive(Debug)]
 pub struct PartReader {
     path: PathBuf,
-    /// Where the next value stands.
+    /// Offset of the next value.
     next: u64,
     /// The outcome of the samples.
     pub simulated: Simulated,

@@ -32,7 +32,7 @@ pub struct Plan {
 pub struct StudyRequest {
     /// Absolute paths of the models.
     pub models: Vec<PathBuf>,
-    /// The models as they were named; results say that, and not where a machine has them.
+    /// The models as they were named; results state that name, not the path on a machine.
     pub named: Vec<PathBuf>,
     /// Parameters that are set.
     pub set: Vec<String>,
@@ -94,7 +94,7 @@ pub struct Shard {
 }
 
 impl Shard {
-    /// Shards of at most `seconds` seconds, where a part does not take longer, from the deferred tasks of a model.
+    /// Shards of at most `seconds` seconds, unless a part takes longer, from the deferred tasks of a model.
     pub fn of(model: usize, scene: Option<&str>, deferred: &[Deferred], seconds: f64) -> Vec<Self> {
         let mut shards: Vec<Self> = Vec::new();
         for task in deferred {

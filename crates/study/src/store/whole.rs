@@ -12,7 +12,7 @@ use tempfile::NamedTempFile;
 use super::Content;
 use super::error::StoreError;
 
-/// How temporary names begin.
+/// Prefix of temporary names.
 const TEMPORARY: &str = ".part-";
 
 /// Whether a file shall survive a loss of power at once.

@@ -45,7 +45,7 @@ impl Integrator {
 }
 
 impl CostMethod {
-    /// How bounds are found; none of one simulation.
+    /// Curve of the bounds; `None` for a single simulation.
     pub fn curve(self) -> Option<Curve> {
         match self {
             Self::Bounds(curve) | Self::BoundsBy(curve, _) => Some(curve),
@@ -67,7 +67,7 @@ impl CostMethod {
         self.curve().map_or(Self::By(integrator), |curve| Self::BoundsBy(curve, integrator))
     }
 
-    /// In files.
+    /// Name in files.
     pub fn name(self) -> String {
         match self {
             Self::Bounds(curve) => curve.about().name.to_owned(),
@@ -81,7 +81,7 @@ impl CostMethod {
         }
     }
 
-    /// For people.
+    /// Label for people.
     pub fn label(self) -> String {
         match self {
             Self::Bounds(curve) => curve.about().label.to_owned(),

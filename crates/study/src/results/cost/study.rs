@@ -75,7 +75,7 @@ impl CostStudy {
 /// Reference for the errors: runs with three step sizes, extrapolated.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CostReference {
-    /// How it bounds.
+    /// Method of its bounds.
     pub method: CostMethod,
     /// Its degree.
     pub order: usize,
@@ -106,7 +106,7 @@ pub struct CostPoint {
     pub steps: usize,
     /// The best of a few runs, s; compiling the model is not in it.
     pub seconds: f64,
-    /// How far the bounds are off; infinite if they are not known at all.
+    /// Deviation of the bounds; infinite if they are unknown.
     pub deviation: Deviation,
     /// Whether the error is smaller than the reference's own, and therefore not known.
     pub limited: bool,
@@ -121,7 +121,7 @@ pub struct CostPoint {
 pub enum Deviation {
     /// Deviation of bounds.
     Bounds {
-        /// How far they lie outside of the reference's.
+        /// Distance by which they lie outside of the reference's.
         over_width: f64,
         /// Distance to the true ends, inside.
         under_coverage: f64,
@@ -170,7 +170,7 @@ impl CostPoint {
 }
 
 impl Deviation {
-    /// How far bounds lie outside; of a trajectory, its error.
+    /// Distance by which bounds lie outside; for a trajectory, its error.
     pub fn over_width(self) -> f64 {
         match self {
             Self::Bounds { over_width, .. } => over_width,
