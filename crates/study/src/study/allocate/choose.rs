@@ -90,8 +90,8 @@ fn continuous(slack: &mut dyn Slack, items: &[Item], tightest: &[f64], start: &[
     }
     let mut from = tightest.to_vec();
     priced.iter().for_each(|&i| from[i] = start[i].clamp(tightest[i], items[i].widest));
-    // Where worst cases lie inside of the box, sizes hardly change them: the linearisation begins where all
-    // requirements hold.
+    // If worst cases lie inside of the box, sizes hardly change them: the linearisation begins where all requirements
+    // hold.
     let is_flat = slack.power() == Power::First && is_flat(slack, &from, tightest);
     let starts = if is_flat { flat_starts(slack, items, tightest, &priced, &from) } else { vec![from] };
     let cost = |multiples: &[f64]| priced.iter().filter_map(|&i| items[i].cost(multiples[i])).sum::<f64>();
@@ -100,8 +100,8 @@ fn continuous(slack: &mut dyn Slack, items: &[Item], tightest: &[f64], start: &[
     found.reduce(cheaper).unwrap_or_else(|| tightest.to_vec())
 }
 
-/// Where all requirements hold: with all sizes smaller by a factor, and, since one that passes its worst case costs
-/// nothing more of a margin, with each at its widest and the others smaller.
+/// Starts at which all requirements hold: with all sizes smaller by a factor, and, since one that passes its worst case
+/// costs nothing more of a margin, with each at its widest and the others smaller.
 fn flat_starts(
     slack: &mut dyn Slack,
     items: &[Item],

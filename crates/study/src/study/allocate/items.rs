@@ -11,7 +11,7 @@ pub enum Choice {
     Fixed,
     /// It is loosened together with all others.
     Together,
-    /// It costs so much now, and inversely as much at any multiple.
+    /// Its cost at the model's value, inversely proportional to the multiple.
     Reciprocal(f64),
     /// One of these: multiple, cost and name, the cheapest first.
     Grades(Vec<(f64, f64, String)>),

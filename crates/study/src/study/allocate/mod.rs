@@ -30,7 +30,7 @@ use wide::{Wide, largest_error, of, surrogate};
 pub(in crate::study) use wide::{raise, run_simulations};
 use worst::{Slack, Worst};
 
-/// How to allocate.
+/// Options of an allocation.
 #[derive(Clone, Copy, Debug)]
 pub struct AllocateOptions {
     /// The share of the production that fulfils all requirements; every case if absent.

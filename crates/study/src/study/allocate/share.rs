@@ -22,7 +22,7 @@ pub struct Share<'s> {
 
 /// Samples of the model's own laws, with their weights.
 struct Drawn {
-    /// For which multiples.
+    /// The multiples for which the samples were drawn.
     multiples: Vec<f64>,
     samples: Vec<Vec<f64>>,
     weights: Vec<f64>,
@@ -42,7 +42,7 @@ impl<'s> Share<'s> {
         sample.iter().enumerate().map(along).collect()
     }
 
-    /// Samples for these multiples, drawn again where those before were for others.
+    /// Samples for these multiples, drawn again if those before were for others.
     fn draw(&mut self, multiples: &[f64]) -> &Drawn {
         let is_other = |(a, b): (&f64, &f64)| a / b > TUNING.redrawn || b / a > TUNING.redrawn;
         let drawn = match self.drawn.take() {

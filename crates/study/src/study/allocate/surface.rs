@@ -10,7 +10,7 @@ use super::tuning::TUNING;
 pub struct Surface<'k> {
     kept: Margins<'k>,
     pub items: &'k [Item],
-    /// How many there are.
+    /// Number of margins.
     pub count: usize,
     /// Nominal margins, in their units.
     pub nominal: Vec<f64>,
@@ -38,7 +38,7 @@ impl<'k> Surface<'k> {
         self.items.len() <= MOST_ON_GRIDS
     }
 
-    /// How far a margin may be off; unknown if it cannot be relied on.
+    /// Error of a margin; unknown if it cannot be relied on.
     pub fn error(&self, requirement: usize) -> f64 {
         self.kept.error(requirement)
     }
@@ -48,7 +48,7 @@ impl<'k> Surface<'k> {
         self.kept.surrogate_error(requirement)
     }
 
-    /// The size of a margin that others are compared with: its unit, where nothing is left of it at the nominal values.
+    /// The size of a margin with which others are compared: its unit, if nothing is left of it at the nominal values.
     pub fn scale(&self, requirement: usize) -> f64 {
         let nominal = self.nominal[requirement].abs();
         if nominal > f64::MIN_POSITIVE { nominal } else { 1.0 }

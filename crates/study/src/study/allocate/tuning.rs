@@ -43,7 +43,7 @@ tuning! {
         rare: f64 = 0.1, moves "tolerances that are found for a yield";
         /// Most failing points about which points are drawn for a requirement.
         places: usize = 6, moves "tolerances that are found for a yield";
-        /// Points are drawn again where a multiple is another by this factor.
+        /// Points are drawn again if a multiple changes by this factor.
         redrawn: f64 = 1.2, moves "tolerances that are found for a yield";
         /// Samples from which the derivatives of the quantile are taken: those between these multiples of the share
         /// that may fail.

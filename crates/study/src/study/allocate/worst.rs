@@ -15,7 +15,7 @@ pub trait Slack {
     /// Remaining margin, linearised in a power of the multiples.
     fn linearised(&mut self, multiples: &[f64]) -> Vec<Linear>;
 
-    /// In which power.
+    /// The power.
     fn power(&self) -> Power;
 
     /// Derivatives of a requirement's remaining margin with respect to the multiples, at its least value.
@@ -27,7 +27,7 @@ pub trait Slack {
     /// Whether a search has to end now.
     fn is_interrupted(&self) -> bool;
 
-    /// Lets another share fail, where one may.
+    /// Sets the share that may fail, if one may.
     fn allow(&mut self, _: f64) {}
 
     /// Share of each tolerance in the consumed margin of a requirement.
@@ -35,7 +35,7 @@ pub trait Slack {
         let slopes = self.slopes_at_least(multiples, requirement);
         let taken: Vec<f64> = slopes.iter().zip(multiples).map(|(slope, multiple)| (slope * multiple).abs()).collect();
         let all: f64 = taken.iter().sum();
-        // Where the worst case lies inside of the box, no tolerance takes anything.
+        // If the worst case lies inside of the box, no tolerance takes anything.
         taken.into_iter().map(|own| if all > 0.0 { own / all } else { 0.0 }).collect()
     }
 

@@ -1,4 +1,4 @@
-//! Which uncertain parameters the instances of an assembly have for themselves, and which they share.
+//! Uncertain parameters that the instances of an assembly have for themselves, and those that they share.
 
 use crate::model::{Description, InstanceKind, ParameterValue};
 use crate::results::AssemblySummary;

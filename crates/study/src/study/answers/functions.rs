@@ -7,7 +7,7 @@ use crate::study::bounding::{Bounded, FunctionEnds, WorstFunction, as_constants}
 use crate::study::excited::Limits;
 use crate::study::problem::Study;
 
-/// How far each output is moved; of those of which that is known.
+/// Displacement of each output by excitations, if known.
 pub fn excitations(study: &Study, bounded: &Bounded, bounds: &Bounds) -> Vec<ExcitationSummary> {
     let Some(functions) = &bounded.functions else { return Vec::new() };
     let of_output = |(index, output): (usize, &OutputBounds)| {

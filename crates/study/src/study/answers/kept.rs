@@ -104,8 +104,7 @@ impl Kept {
         &self.times
     }
 
-    /// How far an output's values may be from the truth, in each row, anywhere in the box, and in which rows they
-    /// cannot be relied on.
+    /// Errors of an output's values, in each row, anywhere in the box, and rows in which they cannot be relied on.
     pub fn error(&self, output: usize) -> &BandError {
         let (part, index) = self.indices[output];
         &self.parts[part].part.errors[index]

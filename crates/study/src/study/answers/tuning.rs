@@ -9,7 +9,7 @@ tuning! {
         worth_telling: f64 = 1e-3, moves "which modes are reported";
         /// A step resolves a mode that turns by this angle, rad, in it.
         resolving_angle: f64 = 0.1, moves "which modes are reported";
-        /// How long a jump takes, as a share of the duration.
+        /// Duration of a jump, as a share of the run's.
         jump_time: f64 = 1e-9, moves "worst functions of excitations as they are written";
         /// Points that lie this close to a straight line are on it, as a share of how far the function ranges.
         straight: f64 = 1e-9, moves "worst functions of excitations as they are written";

@@ -40,7 +40,7 @@ pub(super) struct Climb {
     start: Vec<f64>,
     /// The best point so far.
     pub best: Option<Known>,
-    /// Between the best point and those before it, the last one last.
+    /// Curvatures between the best point and those before it, the latest last.
     curvatures: Vec<Curvature>,
     /// Steps from the best point that were no better.
     failures: i32,
@@ -50,7 +50,7 @@ pub(super) struct Climb {
 }
 
 impl Climb {
-    /// To an end of an output that ranges over so much in the row, by about; its error is `allowed`.
+    /// A climb to an end of an output whose range in the row is about `width`; its error is `allowed`.
     pub fn new(end: End, start: Vec<f64>, width: f64, allowed: f64) -> Self {
         let worth = (TUNING.worth_of_step * width).min(TUNING.worth_of_allowed * allowed);
         Self { end, start, best: None, curvatures: Vec::new(), failures: 0, worth, is_done: false }
@@ -77,7 +77,7 @@ impl Climb {
         if promise.is_nan() { f64::INFINITY } else { promise }
     }
 
-    /// Where a whole step from the best point goes.
+    /// Target of a whole step from the best point.
     fn target(&self, best: &Known) -> Vec<f64> {
         let Known { point, slope, .. } = best;
         let is_free = |axis: usize| slope[axis] * point[axis] < 0.0 || point[axis].abs() < 1.0;
@@ -125,7 +125,7 @@ impl Climb {
     pub fn take(&mut self, found: Known) {
         let is_known = found.value.is_finite() && found.slope.iter().all(|slope| slope.is_finite());
         let Some(best) = &mut self.best else {
-            // Where nothing is known of its start a climb does not begin.
+            // If nothing is known of its start a climb does not begin.
             (self.is_done, self.best) = if is_known { (false, Some(found)) } else { (true, None) };
             return;
         };

@@ -16,7 +16,7 @@ pub(super) struct Open {
     pub gap: f64,
 }
 
-/// By row and output, from all climbs. Between the rows that are followed climbs are single: the gaps are those of
+/// Ends by row and output, from all climbs. Between the rows that are followed climbs are single: the gaps are those of
 /// the followed rows before and after.
 pub(super) fn ends(
     search: &AttainedSearch<'_, '_>,

@@ -5,7 +5,7 @@
 use super::tuning::TUNING;
 use crate::numerics::dot;
 
-/// From one point to another: the move, and by how much the gradient falls.
+/// The move from one point to another, and the decrease of the gradient.
 pub(super) struct Curvature {
     pub moved: Vec<f64>,
     pub fall: Vec<f64>,
@@ -15,8 +15,8 @@ pub(super) struct Curvature {
 pub(super) struct Bend(Vec<(f64, Vec<f64>)>);
 
 impl Bend {
-    /// By the BFGS formula from B = 0 (Nocedal & Wright, Numerical Optimization, equation 6.19), of moves along which
-    /// the gradient falls.
+    /// The model by the BFGS formula from B = 0 (Nocedal & Wright, Numerical Optimization, equation 6.19), from moves
+    /// along which the gradient falls.
     pub fn of<'c>(curvatures: impl Iterator<Item = &'c Curvature>) -> Self {
         let mut bend = Self(Vec::new());
         for Curvature { moved, fall } in curvatures {

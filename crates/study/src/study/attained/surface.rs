@@ -18,7 +18,8 @@ pub(super) struct Surfaces {
 pub(super) struct Surface(pub Vec<f64>);
 
 impl Surfaces {
-    /// Through samples at these ξ, for functions with these derivatives there (in ξ); `None` if they are too few.
+    /// Polynomials through samples at these ξ, for functions with these derivatives there (in ξ); `None` if they are
+    /// too few.
     pub fn new(domain: &ParameterBox, points: Vec<Vec<f64>>, functions: &[Derivatives<'_>]) -> Option<Self> {
         let fit = GradientFit::new(points, functions)?;
         let decomposition = SobolDecomposition::new(fit.basis(), &domain.zones);
@@ -32,17 +33,17 @@ impl Surfaces {
         self.fit.basis()
     }
 
-    /// From values and gradients (in ξ) at the samples.
+    /// The polynomial of values and gradients (in ξ) at the samples.
     pub fn of(&self, samples: &[&(f64, Vec<f64>)]) -> Surface {
         Surface(self.fit.coefficients(samples.iter().map(|(value, slopes)| (*value, slopes.as_slice()))))
     }
 
-    /// Where it is largest, or with the sign −1 least, by about.
+    /// The approximate point of its greatest value, or with the sign −1 of its least.
     pub fn end(&self, Surface(coefficients): &Surface, sign: f64, start: &[f64]) -> Vec<f64> {
         self.fit.maximum(coefficients, sign, start)
     }
 
-    /// Which parameters an output's spread comes from, given its range and where its ends are.
+    /// Contributions of the parameters to an output's spread, given its range and the points of its ends.
     pub fn sensitivity(&self, Surface(coefficients): &Surface, range: Range, ends: [&[f64]; 2]) -> Sensitivity {
         let k = self.nominal.len();
         let (main, total) = match self.decomposition.indices(coefficients) {

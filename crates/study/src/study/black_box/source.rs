@@ -112,8 +112,7 @@ impl ProgramSource {
         self.summary.get().cloned()
     }
 
-    /// How many times finer than the model's the program's own steps shall be under a schedule; 1 where nothing
-    /// refines them.
+    /// Refinement of the program's own steps under a schedule, relative to the model's; 1 if nothing refines them.
     pub fn refinement(&self, schedule: &Schedule) -> f64 {
         if self.refined_by().is_none() { 1.0 } else { self.schedule.first_step() / schedule.first_step() }
     }
@@ -159,7 +158,7 @@ impl ProgramSource {
         Ok(found.into_iter().flatten().collect())
     }
 
-    /// The same, asked once more whatever is known.
+    /// The same, evaluated once more even if known.
     ///
     /// # Errors
     /// If the program cannot be started, and at an interruption.

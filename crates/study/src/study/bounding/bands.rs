@@ -122,7 +122,7 @@ fn exclude(a: &Band, b: &Band, row: usize) -> bool {
     let proven = [a, b].map(|band| !band.method.about().is_sampled);
     let below = a.lower[row] - b.lower[row];
     let above = b.upper[row] - a.upper[row];
-    // How far b reaches beyond a, and a beyond b.
+    // Distances by which b reaches beyond a, and a beyond b.
     let [b_beyond, a_beyond] = [below.max(above), (-below).max(-above)];
     let apart = match proven {
         [false, false] => a_beyond.max(b_beyond),

@@ -33,7 +33,7 @@ impl Attained {
         }
     }
 
-    /// From the least to the largest value of an output in a row.
+    /// Range of an output in a row.
     pub fn range(&self, row: usize, output: usize) -> Option<Range> {
         let [Some((lower, _)), Some((upper, _))] = self.ends[row * self.outputs + output] else { return None };
         Some(Range { lower, upper })

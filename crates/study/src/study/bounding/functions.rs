@@ -9,8 +9,8 @@ use crate::numerics::{Cell, Range, Sample, largest};
 pub struct FunctionEnd {
     /// The output under the worst function found; NaN if none could be simulated.
     pub value: f64,
-    /// How much further the end may be: the gain that the gradient at that function still promises, and the error of
-    /// the cells.
+    /// Possible distance from here to the true end: the gain that the gradient at that function still promises, and the
+    /// error of the cells.
     pub open: f64,
 }
 
@@ -37,11 +37,11 @@ pub struct FunctionEnds {
     ends: Vec<[FunctionEnd; 2]>,
     /// Error of the steps, by row and output, where it was measured.
     steps: Vec<Option<f64>>,
-    /// By output, with how far it goes from the middle of all limits.
+    /// By output, the furthest function with its distance from the middle of all limits.
     pub worst: Vec<Option<(f64, WorstFunction)>>,
     /// By output, the functions under which it is least and greatest in some row.
     pub extremes: Vec<[Option<WorstFunction>; 2]>,
-    /// By row and output: how far each parameter, then each input moves it either way, to first order from the middle
+    /// By row and output: displacement of the output by each parameter, then each input, to first order from the middle
     /// of all limits.
     parts: Vec<Vec<f64>>,
     /// The excitation that each input is, by index of its trajectory.
@@ -79,7 +79,7 @@ impl FunctionEnds {
         known.iter_mut().zip(parts).for_each(|(known, own)| *known += own);
     }
 
-    /// How far parameters and inputs move an output.
+    /// Displacements of an output by parameters and inputs.
     pub fn parts(&self, row: usize, output: usize) -> &[f64] {
         &self.parts[row * self.outputs + output]
     }
@@ -113,7 +113,7 @@ impl FunctionEnds {
         }
     }
 
-    /// How far an end of an output in a row is, and how much further it may be.
+    /// An end of an output in a row, and the distance that it may still be off.
     pub fn end(&self, row: usize, output: usize, is_upper: bool) -> FunctionEnd {
         self.ends[row * self.outputs + output][usize::from(is_upper)]
     }
@@ -136,13 +136,13 @@ impl FunctionEnds {
         }
     }
 
-    /// From the lower to the upper end of an output in a row.
+    /// Range of an output in a row.
     pub fn range(&self, row: usize, output: usize) -> Range {
         let [lower, upper] = self.ends[row * self.outputs + output];
         Range { lower: lower.value, upper: upper.value }
     }
 
-    /// How much further one of them may be; NaN if that is not known of both.
+    /// Largest distance that one of them may still be off; NaN if it is unknown for either.
     pub fn open(&self, row: usize, output: usize) -> f64 {
         largest(self.ends[row * self.outputs + output].map(|end| end.open))
     }

@@ -47,7 +47,7 @@ pub struct Bounded {
     /// Absent if no method is asked for.
     pub validation: Option<(Validation, MethodSummary)>,
     pub methods: Vec<(Method, Outcome)>,
-    /// The same with halved steps, where asked for.
+    /// The same with halved steps, if requested.
     pub halved: Vec<(Method, Outcome)>,
     pub doubts: Doubts,
     /// Ends over functions of the time, where something is excited.

@@ -70,7 +70,7 @@ impl KnownBands {
         outputs.map(|(output, _)| output.name.as_str())
     }
 
-    /// How far the first band of each output lies outside of the known one, and inside: a bound that is not known is
+    /// Distances by which the first band of each output lies outside of the known one, and inside: an unknown bound is
     /// infinitely far outside. Rows without a known bound are not compared.
     pub(super) fn of_bounds(&self, outputs: &[OutputBounds]) -> Deviation {
         let (mut over_width, mut under_coverage) = (0.0_f64, 0.0_f64);
@@ -90,7 +90,7 @@ impl KnownBands {
         Deviation::Bounds { over_width, under_coverage }
     }
 
-    /// How far courses lie off the nominal ones, output by output; rows that are missing, infinitely far.
+    /// Distance of courses from the nominal ones, output by output; infinite for missing rows.
     pub(super) fn of_courses<'c>(&self, courses: impl Iterator<Item = &'c [f64]>) -> Deviation {
         let mut error = 0.0_f64;
         for ((known, &scale), course) in self.outputs.iter().zip(&self.scales).zip(courses) {

@@ -26,7 +26,7 @@ use reference::Reference;
 use timing::{method, timed};
 use tuning::TUNING;
 
-/// How to study.
+/// Options of a cost study.
 #[derive(Clone, Copy)]
 pub struct CostOptions<'a> {
     /// Error that is wanted, relative to each output's scale.

@@ -1,4 +1,4 @@
-//! Which reference can be had within the budget.
+//! Choice of the reference within the budget.
 
 use super::grid::{LEVELS, SCAN, Setting, finer, smoothest, uncertain};
 use super::timing::spent;
@@ -12,7 +12,7 @@ use crate::study::scheme;
 pub(super) struct ReferencePlan {
     pub(super) method: CostMethod,
     pub(super) order: usize,
-    /// How much finer the finest steps are than the model's.
+    /// Refinement of the finest steps relative to the model's.
     pub(super) parts: f64,
     /// Points of the dense scan.
     pub(super) scan: Option<usize>,

@@ -51,7 +51,7 @@ pub(super) fn bounds(
     )
 }
 
-/// The same against the clock: seconds are those of the method alone, since compiling the model is the same for all.
+/// The same with time: seconds are those of the method alone, since compiling the model is the same for all.
 ///
 /// # Errors
 /// As [`bounds`].

@@ -33,7 +33,7 @@ tuning! {
         least_order: usize = 2, moves "the reference of a cost study";
         /// Simulations of one run of the reference.
         most_simulations: f64 = 1e4, moves "the reference of a cost study";
-        /// How much finer the reference's finest steps may be than the model's.
+        /// Refinements of the reference's finest steps, relative to the model's.
         finer_references: [f64; 5] = [16.0, 8.0, 4.0, 2.0, 1.0], moves "the reference of a cost study";
         /// Points of the dense scan, a parameter, for one, two and three: odd, so that every second of them makes a
         /// scan too.
