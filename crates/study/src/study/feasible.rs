@@ -24,13 +24,13 @@ pub struct Survey {
     first: SimulationError,
     /// All that were tried, and those that cannot be.
     samples: usize,
-    /// How many of them fail.
+    /// Number of samples that fail.
     failing: usize,
-    /// Where these lie, parameter by parameter, where that says something.
+    /// Ranges in which these lie, parameter by parameter, if they are informative.
     places: Vec<FailureRange>,
 }
 
-/// Where samples fail along one parameter.
+/// Range of one parameter in which samples fail.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FailureRange {
     /// Name of the parameter.

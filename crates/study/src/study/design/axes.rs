@@ -19,9 +19,9 @@ struct Axis {
     nominal: f64,
     /// Deviations upwards and downwards there.
     deviations: [f64; 2],
-    /// Where it is free: its number among the free ones, and whether deviations are shares of the nominal value.
+    /// If it is free: its number among the free ones, and whether deviations are shares of the nominal value.
     free: Option<(usize, [bool; 2])>,
-    /// Where the tolerance is chosen: the index of its multiple in a point.
+    /// If the tolerance is chosen: the index of its multiple in a point.
     width: Option<usize>,
 }
 
@@ -63,7 +63,7 @@ impl Axis {
 }
 
 impl Axes {
-    /// Those of a model.
+    /// Axes of a model.
     pub fn of(description: &Description, free: &[Free]) -> Self {
         let axis = |parameter: &crate::model::Parameter| {
             let number = free.iter().position(|own| own.name == parameter.name);
@@ -80,7 +80,7 @@ impl Axes {
         Self { all, free: free.to_vec(), widths: Vec::new(), shown }
     }
 
-    /// The same, where tolerances with a cost are chosen, too: up to `widest` times the model's.
+    /// The same, with chosen tolerances that have a cost: up to `widest` times the model's.
     pub fn priced(description: &Description, free: &[Free], widest: f64) -> Self {
         let mut axes = Self::of(description, free);
         for item in items(description, widest) {
@@ -120,7 +120,7 @@ impl Axes {
         self.widths.iter().zip(&point[self.free.len()..]).map(|(width, multiple)| width.cost(*multiple)).sum()
     }
 
-    /// The same as models have it.
+    /// The cost by the model's own grades.
     pub fn price(&self, point: &[f64]) -> f64 {
         self.widths.iter().zip(&point[self.free.len()..]).map(|(width, multiple)| width.price(*multiple)).sum()
     }

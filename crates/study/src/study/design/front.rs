@@ -68,7 +68,7 @@ fn trade(studied: &StudiedPoint) -> Option<DesignTrade> {
     })
 }
 
-/// The same where the margin is the objective and tolerances have costs: from the cheapest near to its optimum on.
+/// The same with the margin as the objective and tolerances with costs: from the cheapest near to its optimum on.
 pub fn front_beside(
     question: &Question,
     point: &[f64],

@@ -18,10 +18,10 @@ pub enum Goal {
     Cost(f64),
 }
 
-/// How good a design is.
+/// Merit of a design.
 #[derive(Clone, Copy, Debug)]
 pub struct Merit {
-    /// By how much the requirements are missed that have to hold, as a share of a limit.
+    /// Largest violation of the requirements that have to hold, as a share of a limit.
     pub violation: f64,
     /// The objective, which is to be large.
     pub value: f64,

@@ -109,7 +109,7 @@ impl Question {
     }
 }
 
-/// How a design counts.
+/// Options of a design study.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct DesignOptions {
     /// The share of the production that fulfils all requirements and is at least as good as the objective's value;

@@ -22,7 +22,7 @@ pub struct StudiedPoint {
     pub margins: Vec<f64>,
     /// The least margin of the model's requirements as a share of its limit, and how far it may be off.
     pub margin: [f64; 2],
-    /// Where tolerances were allocated.
+    /// The allocation, if tolerances were allocated.
     pub allocation: Option<Allocation>,
     pub found: DesignPoint,
     /// Simulations of the study.
@@ -109,8 +109,8 @@ struct Margins {
     simulations: usize,
 }
 
-/// Those of a model at a point. Margins of outputs over time are those of the bounds in the rows, as `mbint run` prints
-/// them; verdicts are of peaks between the rows, too.
+/// Margins of a model at a point. Margins of outputs over time are those of the bounds in the rows, as `mbint run`
+/// prints them; verdicts are of peaks between the rows, too.
 fn margins(
     question: &Question,
     mut model: Description,
@@ -161,7 +161,7 @@ fn checked<T>(found: Result<T, RunError>, options: &Options) -> Result<Option<T>
     }
 }
 
-/// How far the objective may be off.
+/// Error of the objective.
 fn error(question: &Question, all: &[[f64; 2]]) -> f64 {
     let mut errors = all.iter().zip(&question.model.requirements).map(|([_, error], of)| error / scale(of));
     match question.goal {

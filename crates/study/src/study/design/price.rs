@@ -89,7 +89,7 @@ impl Assessed for Priced<'_> {
         step
     }
 
-    /// With tolerances that are all tighter by one factor.
+    /// A point with all tolerances tighter by one factor.
     fn restored(&mut self, point: Vec<f64>) -> Vec<f64> {
         let first = self.axes.free.len();
         let with = |factor: f64| -> Vec<f64> {

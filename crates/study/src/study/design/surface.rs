@@ -28,7 +28,7 @@ pub struct DesignSurface {
 }
 
 impl DesignSurface {
-    /// Over a region, or the largest part of it about a point that has a surrogate.
+    /// A surrogate over a region, or over the largest part of it about a point that has one.
     ///
     /// # Errors
     /// If none of them has.
@@ -126,7 +126,7 @@ pub fn scale(requirement: &Requirement) -> f64 {
     limit.filter(|limit| *limit > 0.0).unwrap_or(1.0)
 }
 
-/// How far the objective may be off, in shares of limits, where they are known.
+/// Error of the objective, in shares of limits, if known.
 pub fn error(surface: &DesignSurface, goal: Goal) -> f64 {
     let Some(margins) = surface.kept.margins() else { return f64::NAN };
     let of = |own: usize| {

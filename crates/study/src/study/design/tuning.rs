@@ -19,7 +19,7 @@ tuning! {
         instants: usize = 33, moves "nominal values that are found";
         /// Optima that are reported at most.
         reported: usize = 3, moves "the list of optima";
-        /// How many times the model's tolerances are allocated, at most.
+        /// Largest multiple of the model's tolerances that is allocated.
         widest: f64 = 3.0, moves "the list of optima";
         /// Half of the region, as a share of the ranges, of the surrogate that determines a quantile.
         region_of_quantile: f64 = 1e-3, moves "which margins count as missed";

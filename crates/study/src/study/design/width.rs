@@ -14,7 +14,7 @@ pub struct Width {
 /// Its cost, a convex function of the multiple.
 #[derive(Clone, Debug)]
 enum Curve {
-    /// So much at the model's tolerance, and inversely as much at a multiple.
+    /// Cost at the model's tolerance, inversely proportional to the multiple.
     Reciprocal(f64),
     /// Straight lines between these multiples and costs: the lower hull of grades, the tightest first.
     Hull(Vec<[f64; 2]>),
@@ -36,7 +36,7 @@ impl Width {
         self.tangent(multiple)[0]
     }
 
-    /// The same as the model has it; NaN below the tightest grade.
+    /// The cost as the model has it; NaN below the tightest grade.
     pub fn price(&self, multiple: f64) -> f64 {
         self.item.cost(multiple).unwrap_or(f64::NAN)
     }

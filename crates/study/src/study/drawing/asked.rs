@@ -17,7 +17,7 @@ pub(in crate::study) type AskedVector = [usize; 3];
 #[derive(Clone, Copy)]
 pub(in crate::study) enum AskedRotation {
     None,
-    /// About z.
+    /// Rotation about z.
     Angle(usize),
     Euler([usize; 4]),
     RollPitchYaw(AskedVector),
@@ -145,14 +145,14 @@ impl DrawingValues {
     }
 }
 
-/// By sines and cosines that are the same bits everywhere; nalgebra's are the system's.
+/// Rotation by sines and cosines that are the same bits everywhere; nalgebra's are the system's.
 fn about(axis: Vector3<f64>, angle: f64) -> UnitQuaternion<f64> {
     let half = 0.5 * angle;
     let parts = Quaternion::from_parts(math::cos(half), math::sin(half) * axis.normalize());
     UnitQuaternion::new_unchecked(parts)
 }
 
-/// About the fixed x, then y, then z.
+/// Rotation about the fixed x, then y, then z.
 pub(super) fn roll_pitch_yaw([roll, pitch, yaw]: [f64; 3]) -> UnitQuaternion<f64> {
     about(Vector3::z(), yaw) * about(Vector3::y(), pitch) * about(Vector3::x(), roll)
 }

@@ -50,7 +50,7 @@ pub(super) fn has_ground(description: &Description) -> bool {
     surfaces(None) < surfaces(Some([0.0, 1.0]))
 }
 
-/// From where to where numbers go, with a margin.
+/// Range of numbers, with a margin.
 pub(super) fn extent(numbers: impl Iterator<Item = f64>) -> [f64; 2] {
     let (least, most) = numbers.fold((0.0_f64, 0.0_f64), |(least, most), x| (least.min(x), most.max(x)));
     let margin = if most > least { 0.3 * (most - least) } else { 1.0 };
@@ -136,7 +136,7 @@ struct Scene<'d> {
     origins: BTreeSet<usize>,
 }
 
-/// Where an element acts.
+/// An end of an element: point and body.
 struct End {
     body: usize,
     position: Vector3<f64>,
@@ -182,7 +182,7 @@ impl Scene<'_> {
         self.frames[body].place(local)
     }
 
-    /// Where a joint is: positions of its points, or of the joints that it couples.
+    /// Ends of a joint: positions of its points, or of the joints that it couples.
     fn joint(&mut self, index: usize) -> Vec<End> {
         let kind = &self.description.joints[index].kind;
         if let Some(between) = kind.between() {
@@ -192,7 +192,7 @@ impl Scene<'_> {
         coupled.into_iter().filter_map(|on| self.joint(on).pop()).collect()
     }
 
-    /// Where an effect acts: at the points, bodies and joints that it names.
+    /// Ends of an effect: the points, bodies and joints that it names.
     fn effect(&mut self, index: usize) -> Vec<End> {
         let mut kind = self.description.effects[index].kind.clone();
         let mut ends = Vec::new();

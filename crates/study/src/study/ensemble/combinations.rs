@@ -6,7 +6,7 @@ use crate::assemble::System;
 use crate::compile;
 use crate::methods::{Combination, OfParameters};
 
-/// Those of a system.
+/// Combinations of a system.
 pub(super) fn of(system: &System) -> Vec<Combination<'_>> {
     let known = |found: compile::Combination| {
         let of = |expr: Expr| -> OfParameters<'_> {

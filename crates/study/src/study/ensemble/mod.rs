@@ -67,9 +67,9 @@ pub(super) struct Motions<'a> {
     iterations: AtomicU64,
     /// Made when something is enclosed.
     certifier: OnceLock<Certifier<'a>>,
-    /// Which outputs' formulas jump, found when it is asked: every row asks.
+    /// Flags of outputs whose formulas jump, computed on first use: every row asks.
     jumps: OnceLock<Vec<bool>>,
-    /// Where simulations are stored, if they are.
+    /// Store of simulations, if they are stored.
     stored: Option<Stored<'a>>,
     /// The program that answers instead of a mechanism, if one does.
     pub(super) source: Option<&'a ProgramSource>,
@@ -128,12 +128,12 @@ impl<'a> Motions<'a> {
         Self { stored, ..self }
     }
 
-    /// The same, of whose outputs ends are known.
+    /// The same, with known ends of its outputs.
     pub fn following(self, followed: Option<&'a FollowedEnds>) -> Self {
         Self { followed, ..self }
     }
 
-    /// The same, whose samples a program answers.
+    /// The same, with samples evaluated by a program.
     pub fn answered_by(self, source: Option<&'a ProgramSource>) -> Self {
         Self { source, ..self }
     }

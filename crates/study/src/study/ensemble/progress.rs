@@ -1,8 +1,8 @@
-//! How far a run has come.
+//! Progress of a run.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// How far a run has come, in simulations times rows.
+/// Progress of a run, in simulations times rows.
 pub(in crate::study) struct Progress<'a> {
     done: AtomicUsize,
     total: usize,
@@ -10,7 +10,7 @@ pub(in crate::study) struct Progress<'a> {
 }
 
 impl<'a> Progress<'a> {
-    /// Before the first simulation.
+    /// Progress before the first simulation.
     pub fn new(total: usize, report: &'a (dyn Fn(f64) + Sync)) -> Self {
         Self { done: AtomicUsize::new(0), total, report }
     }

@@ -12,7 +12,7 @@ use crate::simulate::{SimulationError, Steps};
 use crate::store::{PartReader, PartStore, ScanPart, StoreError, Task};
 use crate::study::price::tuning::TUNING as PRICE;
 
-/// Where the simulations of a study are stored.
+/// Store of the simulations of a study.
 #[derive(Clone, Copy)]
 pub(in crate::study) struct Stored<'a> {
     pub store: &'a PartStore,

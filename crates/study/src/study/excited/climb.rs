@@ -28,7 +28,7 @@ pub struct FunctionClimb {
     pub parts: Vec<f64>,
     /// Error of the cells at the best point.
     pub cells: f64,
-    /// By how much starts from elsewhere have improved the end.
+    /// Improvement of the end by starts from elsewhere.
     pub improved: f64,
     /// The point to go to.
     pub next: Option<Point>,
@@ -44,7 +44,7 @@ pub struct FunctionClimb {
 }
 
 impl FunctionClimb {
-    /// From a point.
+    /// A climb from a point.
     pub fn new(row: usize, output: usize, sign: f64, start: Point) -> Self {
         Self {
             row,
@@ -66,7 +66,8 @@ impl FunctionClimb {
         }
     }
 
-    /// From where the gradient at a point says. The point may be none of the class: it is no end itself.
+    /// A climb from the point to which the gradient at `guide` points. `guide` may lie outside the class: it is no end
+    /// itself.
     pub fn guided(row: usize, output: usize, sign: f64, guide: Point) -> Self {
         Self { is_guided: true, ..Self::new(row, output, sign, guide) }
     }
@@ -76,12 +77,12 @@ impl FunctionClimb {
         self.first.map(|(start, _)| start)
     }
 
-    /// How far the best point is from the start.
+    /// Distance of the best value from that at the start.
     pub fn gain(&self) -> f64 {
         self.best.as_ref().zip(self.start()).map_or(0.0, |((_, reached), start)| reached - start)
     }
 
-    /// How much further the end may be.
+    /// Distance that the end may still be off.
     pub fn open(&self) -> f64 {
         self.promise.max(0.0) + self.cells + self.improved
     }
@@ -160,8 +161,8 @@ impl FunctionClimb {
         self.best = Some((point, reached));
     }
 
-    /// From a point that is no better: halfway to it. Parameters that have passed their best value go to the zero of
-    /// the secant of their derivatives.
+    /// Steps back from a point that is no better: halfway to it. Parameters that have passed their best value go to the
+    /// zero of the secant of their derivatives.
     fn step_back(&mut self, point: &Point, slopes: &[f64]) {
         let Some((best, _)) = &self.best else { return };
         self.halvings += 1;

@@ -20,7 +20,8 @@ struct Bent {
     row: usize,
     output: usize,
     sign: f64,
-    /// Where the kernel under the first function names that function again: its value, upwards, and the rest.
+    /// Set if the kernel under the first function names that function again: its value, upwards, and the remaining
+    /// promise.
     settled: Option<(f64, f64)>,
 }
 
@@ -208,7 +209,7 @@ impl Search<'_, '_> {
             let before = alike.rfind(|climb| climb.row < own.row);
             let around = || [before, after].into_iter().flatten();
             improved[number] = around().map(|other| other.improved).fold(0.0, f64::max);
-            // Where no start from elsewhere is better, one that has settled is the end.
+            // If no start from elsewhere is better, one that has settled is the end.
             if own.settled.is_some_and(|(_, open)| improved[number] <= open) {
                 continue;
             }

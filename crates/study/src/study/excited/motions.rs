@@ -54,7 +54,7 @@ impl<'s, 'm> ExcitedMotions<'s, 'm> {
         Self { study, simulator, schedule, excitations, ends, count: 0 }
     }
 
-    /// The same with steps that end at some times, s, too.
+    /// The same with steps that also end at some times, s.
     pub fn ending_at_times(&self, times: &[f64]) -> Self {
         let schedule = self.schedule.ending_at_times(times);
         let ends = schedule.ends().into();

@@ -2,7 +2,7 @@
 
 use crate::numerics::Cell;
 
-/// Where an output can be: parameters (ξ), and a function for each input.
+/// Arguments of an output: parameters (ξ), and a function for each input.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Point {
     pub xi: Vec<f64>,

@@ -79,7 +79,7 @@ struct OfValue {
     climb: FunctionClimb,
 }
 
-/// How far a value can go at most.
+/// Furthest value that an end can have.
 struct Limit {
     value: f64,
     /// Whether some function goes there, but for the errors of the rows.

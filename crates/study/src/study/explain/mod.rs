@@ -60,7 +60,7 @@ fn idle(uncertain: &[String], prepared: &[Prepared]) -> Vec<usize> {
     (0..uncertain.len()).filter(|number| !reached(number)).collect()
 }
 
-/// By which coordinates, why, and where loops are cut.
+/// The formulation, the reason for it, and the joints at which loops are cut.
 fn formulation(description: &Description, simulator: &Simulator) -> String {
     let info = &simulator.system.formulation;
     let cut: Vec<String> = info.cut.iter().map(|&joint| format!("`{}`", description.joints[joint].name)).collect();

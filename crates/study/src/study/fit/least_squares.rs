@@ -76,7 +76,7 @@ pub fn minimum(
     best.ok_or(FitError::NoSurrogate)
 }
 
-/// At η, of polynomials along a frame.
+/// Linearisation at η of polynomials along a frame.
 pub fn linearised(local: &Local, measurements: &Measurements, eta: &[f64]) -> Linearised {
     let mut points = vec![eta.to_vec()];
     for axis in 0..eta.len() {

@@ -131,7 +131,7 @@ fn fitted(model: &Description, measurements: &Measurements, options: &Options) -
     })
 }
 
-/// Where least squares begin: about the hull of the consistent set, which their estimate may lie outside of, or the
+/// Start of least squares: about the hull of the consistent set, which their estimate may lie outside of, or the
 /// model's box.
 fn around(hull: Option<&[[f64; 2]]>, k: usize) -> SkewAxes {
     let Some(hull) = hull else { return SkewAxes::whole(k) };

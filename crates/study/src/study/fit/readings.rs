@@ -19,7 +19,7 @@ pub struct SurrogateRun {
     pub simulations: usize,
 }
 
-/// How often the model's orders are raised and its steps halved.
+/// Numbers of times that the model's orders are raised and its steps halved.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Finer {
     pub orders: usize,
@@ -55,7 +55,7 @@ pub struct ReadValues {
 }
 
 impl SurrogateRun {
-    /// Over a box within the model's.
+    /// A run over a box within the model's.
     ///
     /// # Errors
     /// If the model cannot be run, or has no surrogate.
