@@ -22,8 +22,8 @@ pub struct InternalError {
     message: String,
 }
 
-/// From now on panics are not shown where they happen (unless `RUST_BACKTRACE` asks for it), but with the error that
-/// they become.
+/// Makes panics appear not where they happen (unless `RUST_BACKTRACE` asks for it), but with the error that they
+/// become.
 pub fn record_panics() {
     let shown = take_hook();
     let wanted = std::env::var_os("RUST_BACKTRACE").is_some_and(|value| value != "0");

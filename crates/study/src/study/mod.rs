@@ -90,7 +90,7 @@ pub use threads::{Threads, pool};
 pub use tuning::tuning;
 pub use verify::{VerifyError, verify};
 
-/// How to run.
+/// Options of a run.
 pub struct Options<'a> {
     /// Instead of the methods that the model asks for.
     pub methods: Option<Vec<Method>>,
@@ -107,7 +107,7 @@ pub struct Options<'a> {
     pub costly: bool,
     /// Time limit of a run that nobody has allowed to take long.
     pub allowance: Option<&'a Allowance>,
-    /// Where simulations are stored, if they are.
+    /// Store of simulations, if they are stored.
     pub store: Option<&'a PartStore>,
     /// Called before the first stored simulation with the disk space that all of them may need, bytes.
     pub disk: &'a (dyn Fn(u64) + Sync),
@@ -154,13 +154,13 @@ pub enum RunError {
     /// A method cannot bound this problem.
     #[error(transparent)]
     Refused(#[from] Refusal),
-    /// Some samples cannot be assembled: where these lie.
+    /// Some samples cannot be assembled: their ranges.
     #[error("{0}. Narrow the intervals, or bound the rest with --skip-infeasible")]
     Infeasible(Box<Survey>),
     /// It would take long, and nobody has allowed it.
     #[error(transparent)]
     Costly(Price),
-    /// Its results would not find room.
+    /// Its results would not fit into memory.
     #[error(transparent)]
     Memory(Memory),
     /// An error of this program.

@@ -94,7 +94,7 @@ fn as_far_as_joints_go(description: &Description, subsystem: Subsystem) -> Resul
     }
 }
 
-/// How a model is reduced to be run.
+/// Reductions of a model before it is run.
 pub(super) fn choices(description: &Description, options: &Options) -> Choices {
     // Stability and modes are those of the whole.
     let is_whole = matches!(description.analysis, Analysis::Statics | Analysis::Modes(_));

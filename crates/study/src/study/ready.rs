@@ -23,12 +23,12 @@ pub(super) struct Studied<'s> {
     pub subsystems: &'s [Subsystem],
     /// One for each subsystem.
     pub studies: &'s [Study<'s>],
-    /// How much they will simulate.
+    /// Cost of their simulations.
     pub price: Price,
 }
 
 impl Studied<'_> {
-    /// The price, where a run asks before it begins.
+    /// The price, if a run asks before it begins.
     fn asked(&self, description: &Description) -> Option<Price> {
         self.price.is_costly(description.bounds.budget.simulations).then_some(self.price)
     }
@@ -76,7 +76,7 @@ pub(super) fn studied<T>(
     }
     if let Some(allowance) = options.allowance {
         match description.bounds.certified {
-            // How long a proof takes is not known beforehand, and it was asked for.
+            // The time of a proof is not known beforehand, and it was asked for.
             Some(_) => allowance.lift(),
             None => allowance.expect(&price, &description.bounds.budget),
         }
@@ -87,7 +87,7 @@ pub(super) fn studied<T>(
     }
 }
 
-/// How much of a model a run simulates.
+/// Size of the part of a model that a run simulates.
 #[derive(Clone, Debug)]
 pub struct Ready {
     /// Coordinates, constraints and degrees of freedom of all subsystems.

@@ -21,18 +21,18 @@ use crate::simulate::SimulationError;
 /// Samples of the uncertain parameters, in the model's order, which are made when they are needed.
 #[derive(Clone, Copy)]
 pub struct ChosenSamples<'c> {
-    /// How many.
+    /// Number of samples.
     pub count: usize,
-    /// Some of them.
+    /// Returns the samples of a range.
     pub at: &'c (dyn Fn(Range<usize>) -> Vec<Sample> + Sync),
 }
 
 /// Numbers of samples that are incomplete.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Sampled {
-    /// Those that cannot be assembled.
+    /// Samples that cannot be assembled.
     pub closed: usize,
-    /// Those that stopped before the end.
+    /// Samples that stopped before the end.
     pub stopped: usize,
 }
 

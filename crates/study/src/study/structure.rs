@@ -139,7 +139,7 @@ fn sum(vectors: &[f64]) -> Option<[f64; 3]> {
     (!vectors.is_empty()).then(|| vectors.chunks_exact(3).fold([0.0; 3], sum))
 }
 
-/// How many effects of each kind there are, in the order in which they come.
+/// Number of effects of each kind, in the order in which they come.
 fn by_kind(effects: Vec<&Effect>) -> Vec<KindCount> {
     let mut counts: Vec<KindCount> = Vec::new();
     for effect in effects {

@@ -193,7 +193,7 @@ impl<'a> Whole<'a> {
         done.bounds.witnesses.iter().filter_map(of_whole).collect()
     }
 
-    /// The same of derivatives, which are zero by those parameters.
+    /// The same for derivatives, which are zero by parameters of other subsystems.
     fn derivatives(&self, done: &Done) -> Vec<OutputDerivatives> {
         let none = vec![0.0; self.parameters.len()];
         let of_whole = |own: &OutputDerivatives| {
@@ -205,7 +205,7 @@ impl<'a> Whole<'a> {
         done.bounds.derivatives.iter().filter_map(of_whole).collect()
     }
 
-    /// The same of functions of excitations.
+    /// The same for functions of excitations.
     fn functions(&self, done: &Done) -> Vec<FunctionWitness> {
         let of_whole = |own: &FunctionWitness| {
             let output = match own.output {

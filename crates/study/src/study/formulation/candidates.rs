@@ -6,7 +6,7 @@ use crate::model::{Description, Formulation};
 use crate::simulate::{Assembled, Samples, SimulationError, Simulator};
 use crate::study::{RunError, first_step, scheme};
 
-/// Something that a system is compiled to: the steps too, or only the start.
+/// Result of compiling a system: the steps too, or only the start.
 pub trait Compiled: Sized {
     /// Most operations that it may take, in joint coordinates or in absolute ones.
     fn operations(is_joint: bool) -> usize;

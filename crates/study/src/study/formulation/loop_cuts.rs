@@ -1,4 +1,5 @@
-//! Which joints close the loops of a mechanism in joint coordinates: those with which its steps are shortest.
+//! Choice of the joints that close the loops of a mechanism in joint coordinates: those with which its steps are
+//! shortest.
 //!
 //! The number of instructions depends on the cut by a half and more, and is known only when a cut is compiled. From the
 //! cut of the shallowest trees one exchange after the other is compiled, and adopted if it is shorter, until none is,

@@ -1,4 +1,4 @@
-//! By which coordinates a mechanism is simulated: where the model leaves it open, by those whose program is shorter.
+//! Choice of the coordinates of a mechanism: if the model leaves it open, those whose program is shorter.
 //!
 //! Joint coordinates are few and their matrices dense, or eliminated link by link; absolute ones are many and theirs
 //! sparse. The number of instructions is only known when both are compiled, so both are; but for the longest
@@ -82,7 +82,8 @@ fn of_trees(questions: &Questions, absolute: System) -> Result<Simulator, RunErr
     }
 }
 
-/// With loops: absolute coordinates first, from whose start joint ones close the loops in the same branch.
+/// Formulation of a mechanism with loops: absolute coordinates first, from whose start joint ones close the loops in
+/// the same branch.
 fn of_loops(questions: &Questions, absolute: System) -> Result<Simulator, RunError> {
     let given_up = |error: SimulationError| match error {
         SimulationError::TooLong => other_way(questions, Formulation::Joint),
@@ -161,7 +162,7 @@ fn chosen(mut simulator: Simulator, why: String) -> Simulator {
     simulator
 }
 
-/// The same where the other formulation was given up.
+/// The same if the other formulation was given up.
 fn several_times_shorter(simulator: Simulator) -> Simulator {
     let why = format!("{} instructions a step instead of several times as many", instructions(&simulator));
     chosen(simulator, why)

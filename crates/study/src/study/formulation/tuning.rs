@@ -15,7 +15,7 @@ tuning! {
         /// Joints on the way from a body to its root, on average, beyond which joint coordinates are not tried, in the
         /// plane and in space: long planar chains are as short in absolute coordinates, in space they never are.
         deepest: [usize; 2] = [25, usize::MAX], moves "choice of coordinates of long chains";
-        /// The same where joints close loops: deep loops couple all that is between their ends.
+        /// The same if joints close loops: deep loops couple all that is between their ends.
         deepest_of_loops: [usize; 2] = [25, 50], moves "choice of coordinates of long chains";
         /// Ratio of the operations of an elimination to those of a step in the other coordinates from which on a
         /// formulation is given up.
@@ -28,7 +28,7 @@ tuning! {
         soon: usize = 100_000, moves "choice of coordinates";
         /// Most operations of the start's eliminations, or of the step's: in about a minute, and in 1 GB.
         operations: usize = 8_000_000, moves "which models are refused";
-        /// The same in joint coordinates where only the start is wanted: in a second or two.
+        /// The same in joint coordinates if only the start is wanted: in a second or two.
         operations_of_check: usize = 1_000_000, moves "coordinates in which large models are checked";
         /// Length of a cut's equations, over that of the best so far, from which on it is not compiled: of 90 cuts of
         /// the models of this repository all 7 that were shorter had equations that were no longer.

@@ -24,7 +24,7 @@ pub struct AtRow {
 pub struct AlongNominal {
     /// Row by row, of each output that is wanted.
     pub rows: Vec<AtRow>,
-    /// From when on they cannot be trusted, s.
+    /// First time from which they cannot be trusted, s.
     pub unreliable_from: Option<f64>,
 }
 
@@ -54,7 +54,7 @@ fn followed(study: &Study, schedule: &Schedule, outputs: &[usize]) -> Result<Vec
     let backwards = TUNING.backwards * (schedule.rows * outputs.len()) as f64;
     let is_jet = !schedule.integration.is_cut() && !study.simulator.system.analysis.visits();
     if is_jet && parameters < backwards {
-        // Where jets stop or are no numbers, adjoints may go on.
+        // If jets stop or are no numbers, adjoints may go on.
         if let Some(found) = forwards(study, schedule, outputs)? {
             return Ok(found);
         }
@@ -62,7 +62,7 @@ fn followed(study: &Study, schedule: &Schedule, outputs: &[usize]) -> Result<Vec
     self::backwards(study, schedule, outputs)
 }
 
-/// By a jet of the first order; `None` if it stops, or is not finite.
+/// Derivatives by a jet of the first order; `None` if it stops, or is not finite.
 fn forwards(study: &Study, schedule: &Schedule, outputs: &[usize]) -> Result<Option<Vec<AtRow>>, SimulationError> {
     let space = JetSpace::new(study.domain.dimension(), 1);
     let half_width = vec![1.0; study.domain.dimension()];
@@ -87,7 +87,7 @@ fn forwards(study: &Study, schedule: &Schedule, outputs: &[usize]) -> Result<Opt
     Ok(Some(found).filter(|found| simulated.missing == 0 && found.iter().all(is_known)))
 }
 
-/// By adjoints.
+/// Derivatives by adjoints.
 fn backwards(study: &Study, schedule: &Schedule, outputs: &[usize]) -> Result<Vec<AtRow>, GradientError> {
     let wanted: Vec<Wanted> = (0..schedule.rows)
         .flat_map(|row| outputs.iter().map(move |&output| Wanted { sample: 0, row, output }))

@@ -60,7 +60,7 @@ impl Found {
 }
 
 impl InRows {
-    /// By as many parameters, of the outputs' derivatives.
+    /// Derivatives by `parameters` parameters, from the outputs' derivatives.
     fn by_parameters(self, outputs: &[OutputGradients], parameters: usize) -> Found {
         let mut by_parameters = vec![0.0; parameters];
         for Term { row, output, weight } in &self.terms {
@@ -71,7 +71,7 @@ impl InRows {
         Found { value: self.value, time: self.time, by_parameters }
     }
 
-    /// At an instant that does not matter to first order.
+    /// Value at an instant that does not matter to first order.
     fn at(curve: &Curve, time: f64) -> Self {
         Self { value: curve.value(time), time: Some(time), terms: curve.terms(time).collect() }
     }
@@ -112,7 +112,7 @@ pub fn in_rows<'s>(
     of_reduced(own, duration, &|output, sign| Curve { times, values: series(output), output, sign })
 }
 
-/// The same of something that is accumulated of an output.
+/// The same for an accumulated quantity of an output.
 pub fn accumulated_in_rows<'s>(channel: Channel, times: &'s [f64], series: &'s [f64]) -> Option<InRows> {
     let last = times.last().copied().unwrap_or(channel.to);
     let within = Channel { to: channel.to.min(last), ..channel };

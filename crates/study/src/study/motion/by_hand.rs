@@ -17,7 +17,7 @@ pub struct Grip {
     pub point: usize,
 }
 
-/// Where a mechanism is that a hand holds.
+/// State of a mechanism that a hand holds.
 #[derive(Clone, Debug)]
 pub struct Held {
     /// Poses of all bodies but the ground, as [`Motion`](crate::results::Motion) has them.
@@ -37,12 +37,12 @@ pub struct Hand<'m> {
     posed: &'m Posed<'m>,
     drawing: &'m Drawing,
     reach: Reach<'m>,
-    /// Where the mechanism is.
+    /// Configuration of the mechanism.
     now: Reached,
 }
 
 impl<'m> Hand<'m> {
-    /// On a mechanism at its nominal start.
+    /// A hand on a mechanism at its nominal start.
     pub(super) fn new(posed: &'m Posed<'m>, drawing: &'m Drawing) -> Self {
         let simulator = &posed.rows.simulator;
         let now = Reached::start(simulator);

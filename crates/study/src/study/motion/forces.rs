@@ -113,7 +113,7 @@ fn ask(description: &Description, asked: &mut DrawingOutputs) -> Vec<AskedForce>
     found
 }
 
-/// Where a point is, in the ground's frame.
+/// Position of a point in the ground's frame.
 fn place(description: &Description, of: PointRef, spatial: bool) -> [Formula; 3] {
     let body = &description.bodies[of.body];
     let point = of.point.map(|point| &body.points[point]);

@@ -35,12 +35,12 @@ use worst::add_worst_motions;
 /// Numbers of two bytes that the motions of a report come to, about.
 pub const REPORT_SIZE: usize = TUNING.report_size;
 
-/// How a motion is found.
+/// Options of a motion.
 #[derive(Clone, Copy, Debug)]
 pub struct MotionOptions<'a> {
     /// Threads; all cores if absent. The motion does not depend on them.
     pub threads: Option<usize>,
-    /// How many numbers of two bytes all poses may come to, about.
+    /// Approximate limit of the number of two-byte numbers in all poses.
     pub size: usize,
     /// Asked now and then whether to end.
     pub interruption: Interruption<'a>,
@@ -51,7 +51,7 @@ pub struct MotionOptions<'a> {
 }
 
 impl<'a> MotionOptions<'a> {
-    /// For a report of a run: cut at events where its motions were, in the formulation that was chosen for it.
+    /// Options for a report of a run: cut at events if its motions were, in the formulation that was chosen for it.
     pub fn of_run(summary: &'a Summary, interruption: Interruption<'a>) -> Self {
         Self {
             threads: None,
@@ -229,7 +229,7 @@ impl<'a> Posed<'a> {
         self.drawn(description, Some(extent(rows.iter().copied().step_by(self.per_body()))))
     }
 
-    /// How far a point of a body goes where a coordinate of its pose changes: 1 for positions, the body's reach for
+    /// Displacement of a point of a body per change of a coordinate of its pose: 1 for positions, the body's reach for
     /// angles, m.
     fn weights(&self, points: &[f64], drawing: &Drawing) -> Vec<f64> {
         let mut points = points.chunks_exact(3);

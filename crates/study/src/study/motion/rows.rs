@@ -107,7 +107,7 @@ impl<'a> MotionRows<'a> {
         Ok(SimulatedRows { times, stopped, events })
     }
 
-    /// By time steps; with the times of common events, by running sample.
+    /// Simulates by time steps. Returns times of rows, and times of common events by running sample.
     fn follow(
         &self,
         description: &Description,

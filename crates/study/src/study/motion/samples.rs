@@ -1,13 +1,13 @@
-//! Which samples show how uncertain a motion is, and of which polynomials of it are made.
+//! Samples that show how uncertain a motion is, and samples from which its polynomials are made.
 
 use super::tuning::TUNING;
 use crate::numerics::{ParameterBox, Sample, SparseGrid, Surrogate, corners, spread};
 
 /// Samples of a box.
 pub(super) struct Samples {
-    /// Those that are shown.
+    /// Samples that are shown.
     pub shown: Vec<Sample>,
-    /// How polynomials are made; `None` if no parameter is uncertain, or too many are.
+    /// Surrogate from which polynomials are made; `None` if no parameter is uncertain, or too many are.
     pub surrogate: Option<Surrogate>,
     /// The samples that they are made from.
     pub nodes: Vec<Sample>,

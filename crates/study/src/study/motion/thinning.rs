@@ -1,4 +1,4 @@
-//! Which rows of a simulation a motion is shown at: those between which straight lines are best.
+//! Choice of the rows of a simulation at which a motion is shown: those between which straight lines are best.
 
 use std::collections::BinaryHeap;
 

@@ -1,4 +1,4 @@
-//! The time that a run takes unasked, and its end where the estimate was too low.
+//! Time that a run takes unasked, and its end if the estimate was too low.
 
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -10,8 +10,8 @@ use crate::study::price::tuning::TUNING;
 use crate::methods::Budget;
 use crate::numerics::clock::Instant;
 
-/// How long a run goes on that nobody has allowed to take long: three times its estimate, and no less than three times
-/// the longest estimate with which a run begins unasked.
+/// Longest duration of a run that nobody has allowed to take long: three times its estimate, and no less than three
+/// times the longest estimate with which a run begins unasked.
 #[derive(Debug)]
 pub struct Allowance {
     begun: Instant,
@@ -24,7 +24,7 @@ pub struct Allowance {
 }
 
 impl Allowance {
-    /// From now on.
+    /// An allowance from now on.
     pub(in crate::study) fn begin() -> Self {
         Self {
             begun: Instant::now(),
@@ -99,7 +99,7 @@ mod tests {
         // Rounds add up.
         let long = expecting(&[200.0, 100.0], Budget::default());
         assert!(!after(&long, 899) && after(&long, 901));
-        // Where the model names the time, or allows many simulations, it has allowed them.
+        // If the model names the time, or allows many simulations, it has allowed them.
         let timed = expecting(&[1.0], Budget { seconds: Some(600.0), ..Budget::default() });
         assert!(!after(&timed, 1801) && after(&timed, 1804));
         let many = expecting(&[1.0], Budget { simulations: 100_000, ..Budget::default() });

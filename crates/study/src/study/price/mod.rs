@@ -29,7 +29,7 @@ pub use work::{stored_bytes, total_work};
 pub struct Price {
     simulations: f64,
     seconds: f64,
-    /// With all simulations that the budget allows where a tolerance decides, s.
+    /// Time with all simulations that the budget allows if a tolerance determines their number, s.
     at_most: f64,
     threads: usize,
 }
@@ -66,7 +66,7 @@ impl Price {
         Self { simulations: 1.0, seconds, at_most: seconds, threads: 1 }
     }
 
-    /// Estimate where a tolerance takes all that the budget allows, s.
+    /// Estimate if a tolerance takes all that the budget allows, s.
     pub(super) fn at_most(&self) -> f64 {
         self.at_most
     }

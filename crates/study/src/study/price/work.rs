@@ -1,4 +1,4 @@
-//! How much a study has to simulate, before it does.
+//! Number of simulations of a study, before it begins.
 
 use crate::methods::{BoundingMethod, Method, Observed};
 use crate::numerics::{step_validation, validation};

@@ -89,7 +89,7 @@ pub struct ReducedEnsemble<'a> {
 }
 
 impl<'a> ReducedEnsemble<'a> {
-    /// For motions whose reductions are in the store.
+    /// An ensemble for motions whose reductions are in the store.
     pub fn new(motions: &'a dyn Ensemble, store: &'a Store, schedule: &Schedule) -> Self {
         let (steps, scales) = (steps_of(schedule), vec![1.0; store.plan.expanded]);
         let ensemble = Self {
@@ -104,7 +104,7 @@ impl<'a> ReducedEnsemble<'a> {
         ensemble
     }
 
-    /// With ends that were followed along gradients.
+    /// Adds ends that were followed along gradients.
     pub fn follow(&self, ends: FollowedEnds) {
         self.followed.get_or_init(|| ends);
     }

@@ -15,7 +15,7 @@ pub struct Evaluated<'a> {
 }
 
 impl<'a> Evaluated<'a> {
-    /// With the samples that are stored now.
+    /// Evaluated values, with the samples that are stored now.
     pub fn new(study: &Study, bounded: &'a Bounded, unreliable: bool, store: &Store) -> Self {
         let whole = |(sample, channels): (Sample, Vec<f64>)| {
             let is_whole = study.domain.contains(&sample) && channels.iter().all(|value| value.is_finite());

@@ -21,7 +21,7 @@ pub struct KeptReduced {
 }
 
 impl KeptReduced {
-    /// How far a value may be from the truth anywhere in the box; unknown if it cannot be relied on.
+    /// Error of a value anywhere in the box; unknown if it cannot be relied on.
     pub fn value_error(&self, value: usize) -> f64 {
         self.errors[value].decisive(0).unwrap_or(f64::NAN)
     }
@@ -41,7 +41,7 @@ impl KeptReduced {
         together(count, &chunks, samples.len())
     }
 
-    /// How far a requirement's margin may be from the truth anywhere in the box; unknown if it cannot be relied on.
+    /// Error of a requirement's margin anywhere in the box; unknown if it cannot be relied on.
     pub fn error(&self, requirement: usize) -> f64 {
         largest(self.values.parts(requirement).map(|part| self.value_error(part)))
     }

@@ -39,7 +39,7 @@ impl<'k> ReducedValues<'k> {
         Some(Self { parts, indices })
     }
 
-    /// How far one may be from the truth anywhere in the box; unknown if it cannot be relied on.
+    /// Error of a value anywhere in the box; unknown if it cannot be relied on.
     pub fn error(&self, number: usize) -> f64 {
         let (part, own) = self.indices[number];
         self.parts[part].kept.value_error(own)
@@ -79,7 +79,7 @@ impl<'k> Margins<'k> {
         Some(Self { parts, indices })
     }
 
-    /// Those of some requirements alone, numbered in this order; no other is evaluated.
+    /// Margins of some requirements alone, numbered in this order; no other is evaluated.
     pub fn only(&self, requirements: &[usize]) -> Self {
         let mut of_parts = vec![Vec::new(); self.parts.len()];
         let place = |&requirement: &usize| {
@@ -96,12 +96,12 @@ impl<'k> Margins<'k> {
         Self { parts: self.parts.iter().zip(&of_parts).map(of_part).collect(), indices }
     }
 
-    /// How many there are.
+    /// Number of requirements.
     pub fn count(&self) -> usize {
         self.indices.len()
     }
 
-    /// How far a margin may be from the truth anywhere in the box; unknown if it cannot be relied on.
+    /// Error of a margin anywhere in the box; unknown if it cannot be relied on.
     pub fn error(&self, requirement: usize) -> f64 {
         let (part, own) = self.indices[requirement];
         self.parts[part].kept.error(own)

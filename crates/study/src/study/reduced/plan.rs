@@ -16,13 +16,13 @@ use crate::simulate::{Accumulation, Channel};
 /// Accumulated quantities, and the values that follow.
 #[derive(Debug)]
 pub struct ReductionPlan {
-    /// Those that the surrogate expands, then those that are only looked up.
+    /// Channels that the surrogate expands, then those that are only looked up.
     pub channels: Vec<Channel>,
     /// Number of those that the surrogate expands.
     pub expanded: usize,
     /// Reduced outputs and margins.
     pub values: Arc<ChannelValues>,
-    /// For each requirement over the time, the channels that say when each slack is least, and how much it is then.
+    /// For each requirement over the time, the channels with the instant and the value of each least slack.
     whens: Vec<Vec<(usize, usize)>>,
 }
 
@@ -69,7 +69,7 @@ impl ReductionPlan {
         sources
     }
 
-    /// From when until when some channels accumulate, s.
+    /// Interval in which some channels accumulate, s.
     pub fn span(&self, channels: impl Iterator<Item = usize> + Clone) -> [f64; 2] {
         let all = channels.map(|channel| &self.channels[channel]);
         let from = all.clone().map(|channel| channel.from).fold(f64::INFINITY, f64::min);

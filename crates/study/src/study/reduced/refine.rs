@@ -83,6 +83,6 @@ fn refined(model: &Description, own: &RequirementSummary, summary: &Summary) -> 
             None => return None,
         },
     }
-    // Where nothing varies there is no surrogate.
+    // If nothing varies there is no surrogate.
     (by_steps || !summary.parameters.is_empty()).then_some(finer)
 }

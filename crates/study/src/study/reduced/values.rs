@@ -9,8 +9,8 @@ use crate::assemble::NumberFormulas;
 pub struct ChannelValues {
     /// Reduced outputs, then parts of the requirements' margins. A value may read reduced outputs before it.
     pub(super) all: Vec<Value>,
-    /// For each requirement, which values are parts of its margin: it is the least of them. Each part is bounded alone,
-    /// so that the kinks between them do no harm.
+    /// For each requirement, the values that are parts of its margin: it is the least of them. Each part is bounded
+    /// alone, so that the kinks between them do no harm.
     pub(super) margins: Vec<Range<usize>>,
 }
 
@@ -28,7 +28,7 @@ pub struct Selection {
 pub struct ValueSlope {
     /// By channels, those that count.
     pub by_channels: Vec<(usize, f64)>,
-    /// By all parameters; none where they count through channels alone.
+    /// By all parameters; empty if they count through channels alone.
     pub by_parameters: Vec<f64>,
 }
 
@@ -39,7 +39,7 @@ pub(super) struct Humps {
     pub times: Vec<usize>,
 }
 
-/// How a value follows from channels.
+/// Formula of a value in terms of channels.
 #[derive(Clone, Debug)]
 pub(super) enum Value {
     Greatest(Vec<usize>),
@@ -97,7 +97,7 @@ impl ChannelValues {
         }
     }
 
-    /// Which values are parts of a requirement's margin.
+    /// Values that are parts of a requirement's margin.
     pub fn parts(&self, requirement: usize) -> Range<usize> {
         self.margins[requirement].clone()
     }

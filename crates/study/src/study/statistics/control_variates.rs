@@ -49,7 +49,8 @@ pub(super) struct Moments {
 }
 
 impl ControlVariate {
-    /// From simulated values and those of the surrogate at the same samples; `quantiles` are those of the values alone.
+    /// Estimates from simulated values and those of the surrogate at the same samples; `quantiles` are those of the
+    /// values alone.
     pub fn new<'v>(values: impl Iterator<Item = &'v f64>, surrogate: &[f64], quantiles: &[SampleQuantile]) -> Self {
         let mut values: Vec<f64> = values.copied().collect();
         let mean = Regression::of(&values, surrogate);
@@ -139,7 +140,7 @@ impl Regression {
 }
 
 impl Moments {
-    /// Those of the surrogate, all with one error.
+    /// Estimates of the surrogate, all with one error.
     pub fn of(own: &Replicates, error: f64) -> Self {
         let uncertain = |Estimate { value, sampling }: Estimate| Uncertain { value, sampling, error };
         let quantiles = own.quantiles().into_iter().map(uncertain).collect();

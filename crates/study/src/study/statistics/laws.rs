@@ -27,7 +27,7 @@ pub struct Laws {
 }
 
 impl Laws {
-    /// Those of a model.
+    /// Laws of a model.
     ///
     /// # Errors
     /// If nothing is uncertain.
@@ -109,7 +109,7 @@ impl Laws {
         }
     }
 
-    /// At most so much lies outside of the box that is bounded.
+    /// Largest probability outside the box that is bounded.
     pub fn outside(&self) -> f64 {
         self.laws
             .iter()

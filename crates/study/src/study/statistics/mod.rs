@@ -185,7 +185,7 @@ pub(super) fn laws(description: &Description) -> Result<Laws, String> {
     Ok(laws)
 }
 
-/// How many times its tolerance the law of a parameter reaches.
+/// Largest deviation by the law of a parameter, in multiples of its tolerance.
 pub(super) fn reach(description: &Description, name: &str) -> f64 {
     let Some((_, [nominal, lower, upper])) = intervals(description).find(|(known, _)| *known == name) else {
         return 1.0;

@@ -22,7 +22,7 @@ use crate::study::prepared::{Prepared, choices, prepare};
 use crate::study::problem::Study;
 use crate::syntax::suggest;
 
-/// How a share was found.
+/// Name of the method that found a share.
 const METHOD: &str = "simulated motions";
 
 /// Name of all requirements together.
@@ -204,7 +204,7 @@ impl Sampled<'_> {
         (each, together)
     }
 
-    /// For how long a requirement counts in a motion, s.
+    /// Duration for which a requirement counts in a motion, s.
     fn window(&self, own: &Requirement) -> f64 {
         let duration = self.description.simulation.duration;
         own.times.map_or(duration, |(from, to)| to.min(duration) - from)

@@ -6,7 +6,7 @@ use super::tuning::TUNING;
 use crate::numerics::statistics::{REPLICATES, Replicates};
 use crate::results::NumberStatistics;
 
-/// Those whose surrogate is known.
+/// Statistics of reduced outputs whose surrogate is known.
 ///
 /// # Errors
 /// At an interruption.

@@ -28,7 +28,7 @@ pub(super) struct Products {
     reduced: usize,
     /// Limits of the shares of products that differ by more than each ε.
     beyond: [f64; TUNING.beyond_error.len()],
-    /// Those that are asked for, of the products alone.
+    /// Quantiles that are requested, of the products alone.
     quantiles: Vec<SampleQuantile>,
 }
 
@@ -101,14 +101,14 @@ impl Products {
         Some(ControlVariate::new(values, surrogate, &self.quantiles))
     }
 
-    /// The same of a reduced output.
+    /// The same for a reduced output.
     pub fn of_reduced(&self, number: usize, surrogate: &[f64]) -> ControlVariate {
         ControlVariate::new(self.of_number(number), surrogate, &self.quantiles)
     }
 
-    /// How far the margins of a requirement differ from these values of its surrogate at the samples, and the share of
-    /// products whose margins differ by more: where `margins`, samples of the surrogate, say the most. `of_box` is how
-    /// far any may differ.
+    /// Largest difference between the margins of a requirement and these values of its surrogate at the samples, and
+    /// the share of products whose margins differ by more: the pair with which `margins`, samples of the surrogate,
+    /// give the narrowest interval. `of_box` is the largest difference over the box.
     pub fn of_margin(&self, requirement: usize, surrogate: &[f64], margins: &[f64], of_box: f64) -> (f64, f64) {
         let largest = largest(self.margins(requirement).zip(surrogate).map(|(margin, own)| margin - own));
         if largest[0].is_nan() {

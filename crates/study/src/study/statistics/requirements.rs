@@ -31,7 +31,7 @@ struct Together<'a> {
     scales: Vec<f64>,
     /// Whether a sample fulfils all of them, by the sign of the errors.
     fulfilled: Vec<[bool; 3]>,
-    /// The same of simulated products, by the sign of the steps' errors; none if there are none.
+    /// The same for simulated products, by the sign of the steps' errors; empty if there are none.
     products: Vec<[bool; 3]>,
     /// Samples of the first replicate with the least margins: the margin in its own scale, and the sample's index.
     least: Vec<(f64, usize)>,
@@ -237,7 +237,7 @@ pub(super) fn interval_of(fulfilled: &[[bool; 3]]) -> [f64; 2] {
     [share_interval(seen(0), fulfilled.len())[0], share_interval(seen(2), fulfilled.len())[1]]
 }
 
-/// How large values are, on average.
+/// Mean absolute value.
 fn mean_size(values: &[f64]) -> f64 {
     let known = values.iter().filter(|value| value.is_finite());
     (known.map(|value| value.abs()).sum::<f64>() / values.len() as f64).max(f64::MIN_POSITIVE)

@@ -59,7 +59,7 @@ impl<'a> Rows<'a> {
         Ok(Self { description, options, laws, kept, evaluator, samples, products: None })
     }
 
-    /// With errors from simulations at samples of the laws, where the surrogate is not within the tolerance.
+    /// The same with errors from simulations at samples of the laws, if the surrogate is not within the tolerance.
     ///
     /// # Errors
     /// If these cannot be simulated.
@@ -113,7 +113,7 @@ impl<'a> Rows<'a> {
         self.samples[replicate].chunks_exact(self.laws.dimension()).step_by(fewer).collect()
     }
 
-    /// By how much fewer samples are taken, so that there are this many of each replicate.
+    /// Factor by which fewer samples are taken, so that there are this many of each replicate.
     pub fn fewer(&self, count: usize) -> usize {
         (self.samples[0].len() / self.laws.dimension() / count).max(1)
     }

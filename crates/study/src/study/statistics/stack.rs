@@ -11,7 +11,7 @@ pub(super) fn is_stack(description: &Description, output: &str) -> bool {
     description.analysis == Analysis::Dimensions || description.chains.iter().any(|chain| chain.output == output)
 }
 
-/// How an output follows each parameter, the largest deviation first.
+/// Sensitivities of an output to each parameter, the largest deviation first.
 pub(super) fn sensitivities(rows: &Rows, row: usize, output: usize) -> Vec<Sensitivity> {
     let causes = rows.causes(row, output);
     let squares: f64 = causes.iter().map(|(.., deviation)| deviation * deviation).sum();
@@ -26,7 +26,7 @@ pub(super) fn sensitivities(rows: &Rows, row: usize, output: usize) -> Vec<Sensi
     found
 }
 
-/// How the samples of an output are distributed; `None` if they are all the same, or unknown.
+/// Histogram of the samples of an output; `None` if they are all the same, or unknown.
 pub(super) fn histogram(rows: &Rows, row: usize, output: usize) -> Option<Histogram> {
     let is_own = rows.own_error(row, output, rows.kept.error(output).total[row]).is_some();
     let values: Vec<f64> =

@@ -117,7 +117,7 @@ fn largest(values: impl Iterator<Item = f64>) -> f64 {
     values.fold(0.0, |most: f64, value| most.max(value.abs()))
 }
 
-/// From the smallest to the largest value.
+/// Distance from the smallest to the largest value.
 fn width(values: &[f64]) -> f64 {
     let (lower, upper) = values
         .iter()

@@ -7,7 +7,7 @@ use crate::simulate::{Controller, Schedule, Steps};
 pub struct StepPlan {
     /// Rows, and the steps between them.
     pub schedule: Schedule,
-    /// Where a tolerance decides the steps: a sample that exceeds its share takes shorter ones.
+    /// Controller of the steps, if a tolerance determines them: a sample that exceeds its share takes shorter ones.
     pub controller: Option<Controller>,
 }
 
@@ -27,7 +27,7 @@ impl StepPlan {
         Self { schedule: self.schedule.refined(2), controller: self.controller_of_halves() }
     }
 
-    /// The same rows with between two and three steps for each, whose ends are others.
+    /// The same rows with between two and three steps for each, whose ends differ.
     pub fn at_odds(&self) -> Self {
         Self { schedule: self.schedule.at_odds(), controller: self.controller_of_halves() }
     }

@@ -8,7 +8,7 @@ use crate::study::bounding::simulation_error;
 use crate::study::ensemble::Progress;
 use crate::study::problem::Study;
 
-/// How steps are taken where no tolerance decides it.
+/// Integration of the steps if no tolerance determines it.
 pub fn integration(study: &Study) -> Integration {
     match study.description.simulation.scheme {
         SchemeChoice::Explicit => Integration::Explicit,

@@ -15,7 +15,7 @@ use crate::compile::{Entries, EquationsProgram, Layout, Program, Tapes};
 use crate::results::DerivativeCheck;
 use crate::simulate::Simulator;
 
-/// How registers change together, per unit of a variable of its scale.
+/// Joint change of registers, per unit of a variable of its scale.
 type Direction = Vec<(usize, f64)>;
 
 /// Matrix entries by row and column.

@@ -16,7 +16,7 @@ pub struct Nominal {
     pub states: Vec<Vec<f64>>,
 }
 
-/// Through values of several functions at nodes, without rounding; `None` if one is not resolved. Functions are
+/// Series through values of several functions at nodes, without rounding; `None` if one is not resolved. Functions are
 /// compared with the largest of their group: states may be of any size.
 pub fn series(
     span: [f64; 2],

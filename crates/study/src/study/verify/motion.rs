@@ -162,7 +162,7 @@ impl<'s> EquationsAtPoint<'s> {
         Some(())
     }
 
-    /// Which conditions are positive in a row of the nominal motion.
+    /// Flags of conditions that are positive in a row of the nominal motion.
     pub fn conditions(&mut self, nominal: &Nominal, row: usize) -> Vec<bool> {
         let (layout, state) = (self.layout().clone(), &nominal.states[row]);
         let n = layout.q.len();
@@ -243,7 +243,7 @@ impl Manufactured {
         self.end - self.begin
     }
 
-    /// From polynomials for q, v and λ.
+    /// A motion from polynomials for q, v and λ.
     fn of_fit(
         fit: Vec<ChebyshevSeries>,
         span: [f64; 2],

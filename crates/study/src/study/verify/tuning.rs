@@ -35,7 +35,7 @@ tuning! {
         nodes_of_loads: [usize; 2] = [96, 384], moves "manufactured motions";
         /// Halvings of the part of the run, where polynomials do not follow the motion or its series is not resolved.
         halvings_of_motion: usize = 8, moves "manufactured motions";
-        /// How far polynomials may be from the nominal motion, as a share of a coordinate's range.
+        /// Largest distance of polynomials from the nominal motion, as a share of a coordinate's range.
         near_nominal: f64 = 0.02, moves "manufactured motions";
         /// Coordinates that hardly move, by less than this share of their scale, swing by as much: a motion at rest
         /// would show nothing. The smaller ones are used if the first has no smooth motion: a swing may leave a
