@@ -1,6 +1,6 @@
 //! Programs that answer instead of a mechanism: points in, rows out.
 //!
-//! A [`Pool`] has processes of one program (`process`), cuts points into calls, and asks again where one fails. How
+//! A [`Pool`] has processes of one program (`process`), cuts points into calls, and asks again if one fails. How
 //! points and rows are written is a protocol: JSON lines (`json`) or tables (`csv`). The room knows numbers and names,
 //! and no study. Guide: `docs/guides/black-box.md`.
 

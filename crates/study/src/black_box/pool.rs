@@ -114,8 +114,8 @@ impl Pool {
         Ok(answers)
     }
 
-    /// Answers of a call's points. What failed is asked again alone, as often as it may: where a process ended, it is
-    /// not known which of the call's points was the reason.
+    /// Answers of a call's points. A point that failed is sent again alone, as often as it may: if a process ended, it
+    /// is not known which of the call's points was the reason.
     fn settled(&self, points: &[Vec<f64>], interrupted: &dyn Fn() -> bool) -> Result<Vec<Answer>, Unanswered> {
         let found = self.call(points, interrupted)?;
         let is_alone = points.len() == 1;

@@ -91,7 +91,7 @@ impl Process {
         }
     }
 
-    /// Ends it: its input, then itself where it goes on. Returns how it ended.
+    /// Ends it: its input, then itself if it goes on. Returns how it ended.
     pub fn end(&mut self, grace: bool) -> String {
         self.input = None;
         let until = Instant::now() + if grace { TUNING.grace } else { Duration::ZERO };

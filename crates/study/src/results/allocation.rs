@@ -96,7 +96,7 @@ pub struct Allocation {
     pub tightest: String,
     /// Requirements that cannot be met; then tolerances are as before.
     pub not_met: Vec<NotMet>,
-    /// Whether the cheapest grades are proven to be: not where there are too many of them.
+    /// Whether the cheapest grades are proven to be: not if there are too many of them.
     pub is_exhaustive: bool,
     /// Verdicts of a study of its own at the result.
     pub requirements: Vec<RequirementSummary>,
@@ -122,7 +122,7 @@ pub struct Allocation {
 }
 
 impl Allocation {
-    /// Cost before and after, where all are known.
+    /// Cost before and after, if all are known.
     pub fn costs(&self) -> [Option<f64>; 2] {
         let sum = |of: fn(&AllocatedTolerance) -> Option<f64>| -> Option<f64> {
             let priced = self.tolerances.iter().filter(|tolerance| tolerance.cost_after.is_some());

@@ -11,7 +11,7 @@ pub struct BlackBoxSummary {
     pub command: Vec<String>,
     /// Number of points that were asked twice.
     pub repeated: usize,
-    /// Outputs whose answers differed there; none where all were the same.
+    /// Outputs whose answers differed there; none if all were the same.
     pub noise: Vec<NoiseSummary>,
     /// The parameter by which the error of the program's own steps was found; without one, no error includes it.
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -24,11 +24,11 @@ pub struct Bounds {
     pub analysis: Analysis,
     /// Frequency responses, frequency by frequency.
     pub responses: Vec<ResponsePoint>,
-    /// Samples at which outputs are least and largest, where they were searched for.
+    /// Samples at which outputs are least and largest, if they were searched for.
     pub witnesses: Vec<Witness>,
     /// Derivatives at the nominal parameters, if they were asked for.
     pub derivatives: Vec<OutputDerivatives>,
-    /// Functions of excitations under which outputs go the furthest, where something is excited.
+    /// Functions of excitations under which outputs go the furthest, if something is excited.
     pub functions: Vec<FunctionWitness>,
     /// Proofs of subsystems, for a certificate.
     pub certified: Vec<Arc<Certified>>,

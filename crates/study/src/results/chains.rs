@@ -16,7 +16,7 @@ pub struct ChainSummary {
 /// A dimension of a chain.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LinkSummary {
-    /// The parameter, or the output where the dimension is a formula.
+    /// The parameter, or the output if the dimension is a formula.
     pub name: String,
     /// The face where the way enters.
     pub from: String,

@@ -14,7 +14,7 @@ pub struct Decision {
     pub saves: Option<Saving>,
 }
 
-/// Instructions that need not be run, as compiling with and without the decision counts them; negative where it costs
+/// Instructions that need not be run, as compiling with and without the decision counts them; negative if it costs
 /// some.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Saving {

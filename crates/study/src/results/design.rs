@@ -17,7 +17,7 @@ pub struct DesignParameter {
     pub display: Option<DisplayUnit>,
     /// Ends of its range, SI.
     pub range: [f64; 2],
-    /// Ends of the part of it that was searched: less where the mechanism cannot be assembled everywhere.
+    /// Ends of the part of it that was searched: less if the mechanism cannot be assembled everywhere.
     pub searched: [f64; 2],
 }
 
@@ -117,11 +117,11 @@ pub struct DesignStudy {
     pub criterion: Criterion,
     /// Free parameters.
     pub parameters: Vec<DesignParameter>,
-    /// Optima, the best first; where no point is feasible, the nearest ones.
+    /// Optima, the best first; if no point is feasible, the nearest ones.
     pub optima: Vec<DesignPoint>,
     /// The model's own point; absent if it cannot be run.
     pub model_point: Option<DesignPoint>,
-    /// The best point without tolerances, with its worst case; absent without tolerances, or where it cannot be run.
+    /// The best point without tolerances, with its worst case; absent without tolerances, or if it cannot be run.
     pub nominal_point: Option<DesignPoint>,
     /// Requirements that the best point does not meet.
     pub not_met: Vec<NotMet>,

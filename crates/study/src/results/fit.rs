@@ -67,7 +67,7 @@ pub struct FitParameter {
 pub struct FitAxis {
     /// A unit vector in multiples of the parameters' half intervals.
     pub direction: Vec<f64>,
-    /// Extent of the set along it, in the same units: 2 where a single parameter is left as open as the model has it.
+    /// Extent of the set along it, in the same units: 2 if a single parameter is left as open as the model has it.
     pub extent: f64,
 }
 

@@ -26,8 +26,8 @@ pub struct ReducedSummary {
     /// The simulated sample with the smallest value, and the one with the largest; absent if no sample has a value.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub worst: Option<[WorstCase; 2]>,
-    /// Set where some of the samples have no value, as of an event that does not occur: how many of those simulated
-    /// have one.
+    /// Set if some of the samples have no value, for example because an event does not occur: number of simulated
+    /// samples that have one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub occurs: Option<Occurrence>,
 }
@@ -83,7 +83,7 @@ pub struct Occurrence {
     /// Parameters of one that has none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub absent: Option<Vec<f64>>,
-    /// Share of the box in which there is one, at least and at most, where the box was divided for it.
+    /// Share of the box in which there is a value, at least and at most, if the box was divided for it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub share: Option<[f64; 2]>,
 }

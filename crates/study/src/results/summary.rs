@@ -45,7 +45,7 @@ pub struct Summary {
     /// A fast mode that the start excites and the steps damp, if it moves an output.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub damped_mode: Option<DampedMode>,
-    /// Events that a part of the box meets: bounds are divided where one is just grazed.
+    /// Events that a part of the box meets: bounds are divided if one is just grazed.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub events: Vec<EventSummary>,
     /// The time up to which events are followed, if it is before the end of the rows.

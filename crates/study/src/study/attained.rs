@@ -40,7 +40,7 @@ type AttainedEnds = (Outcome, Attained, FollowedEnds);
 /// Results of the methods, and the ends that were searched for before.
 type BoundsAlong = (Vec<(Method, Outcome)>, Option<(Outcome, Attained)>);
 
-/// Bounds by every method that is wanted, which know the ends that were searched for before, where they were.
+/// Bounds by every method that is wanted, which know the ends that were searched for before, if any.
 ///
 /// # Errors
 /// If a sample cannot be simulated.

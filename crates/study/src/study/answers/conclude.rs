@@ -87,7 +87,7 @@ pub fn conclude(study: &Study, mut results: Results, note: Option<Note>) -> Ran 
     Ran { bounds, summary, whole, kept }
 }
 
-/// Derivatives of all outputs at the nominal parameters, where they are wanted and there are any.
+/// Derivatives of all outputs at the nominal parameters, if they are wanted and there are any.
 fn derivatives(study: &Study, plan: &StepPlan, rows: usize) -> Vec<OutputDerivatives> {
     let outputs: Vec<usize> = (0..study.simulator.system.outputs.len()).collect();
     let has_them = study.source.is_none() && study.domain.dimension() > 0 && !outputs.is_empty();

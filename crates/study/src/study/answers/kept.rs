@@ -26,7 +26,7 @@ pub struct KeptPart {
     pub errors: Vec<BandError>,
     /// Output times, s.
     pub times: Vec<f64>,
-    /// Reduced outputs and margins, where the model has some.
+    /// Reduced outputs and margins, if the model has some.
     pub reduced: Option<KeptReduced>,
 }
 

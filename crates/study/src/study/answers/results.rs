@@ -12,9 +12,9 @@ pub struct Results {
     pub bounded: Bounded,
     /// Singular configurations that the nominal motion passes.
     pub singular: Vec<SingularPass>,
-    /// Ends that were found along gradients, where they were searched for.
+    /// Ends that were found along gradients, if they were searched for.
     pub attained: Option<(Outcome, Attained)>,
-    /// Cost of the search over functions of the time, where there was one.
+    /// Cost of the search over functions of the time, if there was one.
     pub searched: Option<Outcome>,
     /// Errors of this program; the results of the failed methods are unknown.
     pub internal: Vec<InternalError>,

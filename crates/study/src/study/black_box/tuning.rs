@@ -11,7 +11,7 @@ tuning! {
         rounding: f64 = 1e-12, moves "which programs count as noisy";
         /// Most values that are stored for evaluated points: a validation sample is requested under several schedules.
         most_kept: usize = 1 << 22, moves "time only";
-        /// Steps of model exchange between two rows, where the model does not say their length.
+        /// Steps of model exchange between two rows, if the model does not say their length.
         steps_a_row: f64 = 10.0, moves "bounds of units of model exchange";
     }
 }

@@ -35,7 +35,7 @@ pub struct FunctionEnds {
     outputs: usize,
     /// By row and output, the lower end first.
     ends: Vec<[FunctionEnd; 2]>,
-    /// Error of the steps, by row and output, where it was measured.
+    /// Error of the steps, by row and output, if it was measured.
     steps: Vec<Option<f64>>,
     /// By output, the furthest function with its distance from the middle of all limits.
     pub worst: Vec<Option<(f64, WorstFunction)>>,

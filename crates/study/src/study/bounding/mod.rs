@@ -42,7 +42,7 @@ pub struct Bounded {
     pub plan: StepPlan,
     /// The nominal motion, or its reduced outputs, as bands without width.
     pub nominal: Outcome,
-    /// All that was simulated under the schedule, the nominal motion too where it lies in the box.
+    /// All that was simulated under the schedule, the nominal motion too if it lies in the box.
     pub seen: Ledger,
     /// Absent if no method is asked for.
     pub validation: Option<(Validation, MethodSummary)>,
@@ -50,7 +50,7 @@ pub struct Bounded {
     /// The same with halved steps, if requested.
     pub halved: Vec<(Method, Outcome)>,
     pub doubts: Doubts,
-    /// Ends over functions of the time, where something is excited.
+    /// Ends over functions of the time, if something is excited.
     pub functions: Option<FunctionEnds>,
 }
 
@@ -59,7 +59,7 @@ pub struct Bounded {
 pub struct Doubts {
     /// The first row before which a step does not resolve a function of the time.
     pub unresolved_from: Option<usize>,
-    /// Contacts and kinks, where the equations have any.
+    /// Contacts and kinks, if the equations have any.
     pub switches: Option<Switches>,
     /// Fast modes that the start excites and the steps damp.
     pub damped: Vec<ExcitedMode>,
@@ -76,7 +76,8 @@ impl Bounded {
         std::iter::once(&self.nominal).chain(self.methods.iter().map(|(_, outcome)| outcome))
     }
 
-    /// An output's nominal values by row, each as a range; of none where the box does not hold the nominal parameters.
+    /// An output's nominal values by row, each as a range; empty ranges if the box does not contain the nominal
+    /// parameters.
     pub fn nominal_within(&self, domain: &ParameterBox, output: usize) -> Vec<Range> {
         let nominal = &self.nominal.result.bands[output];
         let is_within = domain.contains(&domain.nominal);
@@ -108,7 +109,7 @@ impl Bounded {
         self.outcomes().map(|outcome| &outcome.result.simulated).chain(validation)
     }
 
-    /// The largest error ratio of a sample, where that is more than 1.
+    /// The largest error ratio of a sample, if it is more than 1.
     pub fn beyond_tolerance(&self) -> Option<f64> {
         let ratios = self.simulated().filter_map(|simulated| simulated.worst_ratio.as_ref());
         ratios.map(|(_, ratio)| *ratio).filter(|ratio| *ratio > 1.0).max_by(f64::total_cmp)

@@ -49,7 +49,7 @@ impl KnownBands {
         Self { outputs, scales: self.scales.clone() }
     }
 
-    /// Widens the known bands, where there are any, to the first of other outputs.
+    /// Widens the known bands, if there are any, to the first of other outputs.
     pub(super) fn widen(&mut self, outputs: &[OutputBounds]) {
         for (known, output) in self.outputs.iter_mut().zip(outputs) {
             for row in 0..known.nominal.len() {

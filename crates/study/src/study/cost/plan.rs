@@ -21,8 +21,8 @@ pub(super) struct ReferencePlan {
 }
 
 impl ReferencePlan {
-    /// The highest order, and with it the finest steps, that two short runs promise to be done in time; the cheapest
-    /// there is where none is. Where the error has an expansion in powers of the steps, these are extrapolated.
+    /// The highest order, and with it the finest steps, that two short runs promise to be done in time; the cheapest if
+    /// none is. If the error has an expansion in powers of the steps, these are extrapolated.
     ///
     /// # Errors
     /// If a run fails, or even the coarsest takes too long, or there are too many parameters for any.

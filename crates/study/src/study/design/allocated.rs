@@ -38,7 +38,7 @@ pub fn allocated(
     }
 }
 
-/// The study at nominal values with the cheapest tolerances there; with those of the point where none will do.
+/// The study at nominal values with the cheapest tolerances there; with those of the point if none will do.
 pub fn at_cost(
     question: &Question,
     axes: &Axes,

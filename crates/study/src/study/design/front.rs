@@ -11,7 +11,7 @@ use crate::results::DesignTrade;
 use crate::study::Options;
 
 /// Cost against margin: the optimum, then those that leave shares of the largest margin there is without tolerances,
-/// each near to the one before. It ends where no tolerances leave as much.
+/// each near to the one before. It ends if no tolerances leave as much.
 pub fn front(
     question: &Question,
     axes: &Axes,

@@ -47,7 +47,7 @@ pub fn refined(
     }
 }
 
-/// The study at a point; where it does not confirm that requirements hold, at others that leave more of them.
+/// The study at a point; if it does not confirm that requirements hold, at others that leave more of them.
 fn confirmed(
     question: &Question,
     axes: &Axes,

@@ -9,7 +9,7 @@ tuning! {
         digits: i32 = 4, moves "nominal values that are found";
         /// Parameters of which both neighbours are tried.
         rounded_parameters: usize = 5, moves "nominal values that are found";
-        /// Error relative to an output's range that the surrogate aims at, where the model asks for none.
+        /// Error relative to an output's range that the surrogate aims at, if the model asks for none.
         tolerance: f64 = 1e-3, moves "nominal values that are found";
         /// Shares of the largest margin without tolerances at which the cost is reported.
         traded: [f64; 4] = [0.2, 0.4, 0.6, 0.8], moves "the list of costs beside margins";

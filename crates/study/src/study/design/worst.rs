@@ -24,7 +24,7 @@ pub trait Assessed {
         best_step(goals, limits, least, most)
     }
 
-    /// A point nearby that violates less, where one can be had without another step.
+    /// A point nearby that violates less, if one can be had without another step.
     fn restored(&mut self, point: Vec<f64>) -> Vec<f64> {
         point
     }
