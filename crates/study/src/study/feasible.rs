@@ -38,7 +38,7 @@ pub struct FailureRange {
     /// Least and largest value of samples that fail.
     lower: f64,
     upper: f64,
-    /// The end of the interval that most of them are near to, where they are from all of it.
+    /// The end of the interval that most of them are near to, if they are from all of it.
     towards: Option<f64>,
 }
 
@@ -162,7 +162,7 @@ fn cut(study: &Study) -> Result<Vec<Piece>, RunError> {
     Ok(pieces)
 }
 
-/// The axis along which samples that fail lie farthest to one side, the wide before the narrow; none where nothing is
+/// The axis along which samples that fail lie farthest to one side, the wide before the narrow; none if nothing is
 /// uncertain.
 fn axis_to_cut(whole: &ParameterBox, piece: &ParameterBox, failing: &[Vec<f64>]) -> Option<usize> {
     let score = |axis: usize| {

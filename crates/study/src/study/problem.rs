@@ -17,7 +17,7 @@ pub(super) struct Study<'a> {
     pub(super) simulator: Simulator,
     pub(super) domain: ParameterBox,
     pub(super) request: BoundsRequest,
-    /// Functions of the time in the equations of motion, where there are any.
+    /// Functions of the time in the equations of motion, if there are any.
     pub(super) time_functions: Option<TimeFunctions>,
     /// Whether all samples are simulated with halved steps too.
     pub(super) certify_time: bool,

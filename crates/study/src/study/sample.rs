@@ -52,7 +52,7 @@ pub struct Trajectories<'t> {
     pub outputs: Vec<(String, String)>,
     /// Times of the rows, s.
     pub times: Vec<f64>,
-    /// Why the rows end before the motion does, where no step fulfils the tolerance from there on.
+    /// Why the rows end before the motion does, if no step fulfils the tolerance from there on.
     pub ended: Option<SimulationError>,
 }
 
@@ -248,7 +248,7 @@ impl Trajectories<'_> {
         if deferred { Err(SimulationError::Deferred) } else { Ok(()) }
     }
 
-    /// Samples of a subsystem that can be assembled, with their indices from the first; one where it depends on none.
+    /// Samples of a subsystem that can be assembled, with their indices from the first; one if it depends on none.
     fn own(&self, number: usize, indices: Range<usize>, closed: &[bool]) -> (Vec<usize>, Vec<Sample>) {
         let first = indices.start;
         let all = (self.chosen.at)(indices.clone());
@@ -298,7 +298,7 @@ fn of_subsystem(subsystem: &Subsystem, sample: &Sample) -> Sample {
     subsystem.parameters.iter().map(|&number| sample[number]).collect()
 }
 
-/// The steps of chosen samples, each of which is cut at its own events where that can be done: else those of
+/// The steps of chosen samples, each of which is cut at its own events if that can be done: else those of
 /// [`steps_and_end`].
 pub(super) fn steps_of_samples(
     study: &Study,
@@ -310,7 +310,7 @@ pub(super) fn steps_of_samples(
     }
 }
 
-/// The model's steps, divided where they do not resolve a function of the time; with a tolerance those that a run would
+/// The model's steps, divided if they do not resolve a function of the time; with a tolerance those that a run would
 /// try first. With them the error that ended their control before the last row, if there is one.
 pub(super) fn steps_and_end(study: &Study) -> Result<(StepPlan, Option<SimulationError>), SimulationError> {
     let (plan, ended) = planned(study, controlling_samples)?;

@@ -8,7 +8,7 @@ tuning! {
         /// Most points of a body between which lengths are sought: pairs of more points are too many to be read in a
         /// drawing.
         most_points: usize = 12, moves "lengths in drawings";
-        /// A distance is a parameter where it equals it to this share of its width at both its ends.
+        /// A distance is a parameter if it equals it to this share of its width at both its ends.
         same_length: f64 = 1e-6, moves "lengths in drawings";
     }
 }

@@ -59,7 +59,7 @@ pub(super) struct Motions<'a> {
     channels: &'a [Channel],
     /// Notes all simulated values.
     ledger: Option<&'a Ledger>,
-    /// Ends that were followed along gradients, where they were.
+    /// Ends that were followed along gradients, if they were.
     followed: Option<&'a FollowedEnds>,
     /// Simulations that are over: at the end, or where they stopped.
     over: AtomicUsize,

@@ -1,4 +1,4 @@
-//! Simulations of an ensemble that are stored: read where they are there, simulated or deferred where they are not.
+//! Simulations of an ensemble that are stored: read if they exist, else simulated or deferred.
 
 use std::ops::Range as Rows;
 use std::sync::atomic::Ordering;

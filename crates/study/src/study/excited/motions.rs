@@ -150,7 +150,7 @@ impl<'s, 'm> ExcitedMotions<'s, 'm> {
     }
 }
 
-/// Other reasons do not occur: motions are not cut where something is excited.
+/// Other reasons do not occur: motions are not cut if something is excited.
 fn simulation(error: NoGradient) -> SimulationError {
     match error {
         NoGradient::Simulation(error) => error,

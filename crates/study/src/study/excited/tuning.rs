@@ -24,7 +24,7 @@ tuning! {
         rounds: usize = 3, moves "ends over functions of time";
         /// Rows in which the steps' error of ends that are not followed is measured.
         checked_rows: usize = 16, moves "errors of ends over functions of time";
-        /// Error of steps over the change by halved ones where a function jumps: by the scheme, a jump takes a step.
+        /// Error of steps over the change by halved ones if a function jumps: by the scheme, a jump takes a step.
         first_order: f64 = 2.0, moves "errors of ends over functions of time";
         /// Iterations of Newton's method: each squares the error.
         newton_rounds: usize = 3, moves "ends over functions of time";

@@ -23,7 +23,7 @@ pub struct FoundSet {
     pub set: Option<Set>,
     /// Simulations of narrower boxes.
     pub simulations: usize,
-    /// Errors by measured row in the last round, SI; where the set is not empty.
+    /// Errors by measured row in the last round, SI; if the set is not empty.
     pub errors: Option<Vec<f64>>,
 }
 
@@ -146,7 +146,7 @@ impl<'a> Approach<'a> {
     }
 
     /// Better surrogates, where their error counts and they are worth it: over the box around a frame that has shrunk,
-    /// or of a higher order. Orders are raised only where all rows are used (`is_all`), since a few more rows make the
+    /// or of a higher order. Orders are raised only if all rows are used (`is_all`), since a few more rows make the
     /// set smaller at no cost. Returns whether there are some.
     fn improved(&mut self, roughness: f64, shrinks: bool, is_all: bool) -> Result<bool, FitError> {
         let domain = self.frame.domain(self.prior);
@@ -166,7 +166,7 @@ impl<'a> Approach<'a> {
         self.rerun(&domain)
     }
 
-    /// A finer run over the frame's box: of a higher order where the surrogate has the larger error, else of shorter
+    /// A finer run over the frame's box: of a higher order if the surrogate has the larger error, else of shorter
     /// steps. Returns whether there is one.
     fn refined(&mut self) -> Result<bool, FitError> {
         let finer = if self.run().is_rough() { &mut self.finer.orders } else { &mut self.finer.steps };
@@ -277,7 +277,7 @@ impl Set {
         self.in_xi(extents(outer(&self.paving), &self.frame.axes.transpose()))
     }
 
-    /// The same of the boxes of the inner one, where there are some.
+    /// The same for the boxes of the inner one, if there are some.
     pub fn inner_hull(&self) -> Option<Vec<[f64; 2]>> {
         let inside = &self.paving.inside;
         (!inside.is_empty()).then(|| self.in_xi(extents(inside.iter(), &self.frame.axes.transpose())))

@@ -7,7 +7,7 @@ use crate::compile::Layout;
 use crate::simulate::{Assembled, Simulator};
 use crate::study::RunError;
 
-/// Compiles in the known formulation, so that the steps are the same; in one of their own where the questions cannot be
+/// Compiles in the known formulation, so that the steps are the same; in one of their own if the questions cannot be
 /// answered in it, as reactions of inboard joints.
 ///
 /// # Errors

@@ -63,7 +63,7 @@ impl<T: Compiled> Candidate<T> {
         }
     }
 
-    /// Joint coordinates, with loops closed from a start in absolute ones where there are any.
+    /// Joint coordinates, with loops closed from a start in absolute ones if there are any.
     pub fn in_joint_coordinates(
         questions: &Questions,
         operations: usize,
@@ -74,7 +74,7 @@ impl<T: Compiled> Candidate<T> {
     }
 }
 
-/// The formulation that is asked for; where that takes too many operations, the other one.
+/// The formulation that is asked for; if that takes too many operations, the other one.
 pub fn asked<T: Compiled>(questions: &Questions) -> Result<T, RunError> {
     let is_joint = questions.formulation == Formulation::Joint;
     if is_joint && assemble::joint_elimination(questions) > T::operations(true) / TUNING.eliminations {
@@ -100,7 +100,7 @@ pub fn other_way<T: Compiled>(questions: &Questions, formulation: Formulation) -
 }
 
 /// Loops in joint coordinates, where absolute ones have no start: bodies without mass, as between the axes of an MJCF's
-/// body, are singular there where constraints are redundant.
+/// body, are singular there if constraints are redundant.
 pub fn where_absolute_are_singular<T: Compiled>(questions: &Questions) -> Option<T> {
     let joint = assemble::in_joint_coordinates(questions, Some(deepest(questions)), None).ok()?.ok()?;
     T::of(because(joint, "absolute coordinates are singular at the start".to_owned()), questions.description).ok()

@@ -18,8 +18,8 @@ use crate::study::formulation::tuning::TUNING;
 
 /// One with another cut than the first, and a shorter step that starts alike, if there is one; `with_roots`, also one
 /// in which bodies behind joints of several axes have coordinates of their own. `assemble` makes the equations of
-/// questions that give the cut. They are not compiled where they are longer than those of the best so far, nor to the
-/// end where that takes many times its operations. Redundant constraints and a singular start depend on the cut, and
+/// questions that give the cut. They are not compiled if they are longer than those of the best so far, nor to the
+/// end if that takes many times its operations. Redundant constraints and a singular start depend on the cut, and
 /// are left with the first.
 pub fn shortest(
     questions: &Questions,

@@ -195,7 +195,7 @@ fn shorter(absolute: Simulator, joint: Simulator) -> Simulator {
     chosen(if is_joint { joint } else { absolute }, why)
 }
 
-/// Builds and assembles a model, without its steps' program where that is not needed to choose the formulation.
+/// Builds and assembles a model, without its steps' program if that is not needed to choose the formulation.
 ///
 /// # Errors
 /// As for [`compiled`].

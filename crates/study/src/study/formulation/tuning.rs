@@ -33,7 +33,7 @@ tuning! {
         /// Length of a cut's equations, over that of the best so far, from which on it is not compiled: of 90 cuts of
         /// the models of this repository all 7 that were shorter had equations that were no longer.
         longer_equations: f64 = 1.1, moves "cuts of loops, and so the last digits";
-        /// Longest step in which the nominal motion is searched for singular configurations where a tolerance chooses
+        /// Longest step in which the nominal motion is searched for singular configurations if a tolerance chooses
         /// the steps, s.
         longest_look: f64 = 1e-3, moves "choice of coordinates of loops";
         /// Most steps of that search.

@@ -28,8 +28,8 @@ pub struct AlongNominal {
     pub unreliable_from: Option<f64>,
 }
 
-/// Derivatives of some outputs in all rows of a plan. Between events where the nominal motion has some; where it cannot
-/// be followed through them, the derivatives are compared with those of halved steps.
+/// Derivatives of some outputs in all rows of a plan. Between events if the nominal motion has some; if it cannot be
+/// followed through them, the derivatives are compared with those of halved steps.
 ///
 /// # Errors
 /// If there are no derivatives, and at an interruption.

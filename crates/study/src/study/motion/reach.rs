@@ -53,7 +53,7 @@ impl<'s> Reach<'s> {
         Self { simulator, closures: HashMap::new() }
     }
 
-    /// Moves from a configuration towards one where all `wanted` of the outputs, m, vanish; ends where no step comes
+    /// Moves from a configuration towards one where all `wanted` of the outputs, m, vanish; ends if no step comes
     /// nearer.
     pub fn towards(&mut self, from: &Reached, sample: &Sample, wanted: &dyn Fn(&[f64]) -> Vec<f64>) -> Reached {
         let scale: Vec<f64> = self.simulator.system.coordinates.iter().map(|own| own.scale).collect();

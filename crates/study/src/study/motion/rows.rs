@@ -21,7 +21,7 @@ pub(in crate::study) struct MotionRows<'a> {
     pub(in crate::study) simulator: Simulator,
     pub(super) domain: ParameterBox,
     pub(super) interruption: Interruption<'a>,
-    /// Whether motions are cut at events where they can be.
+    /// Whether motions are cut at events if they can be.
     pub(super) between_events: bool,
 }
 

@@ -29,7 +29,7 @@ tuning! {
         dampings: [f64; 5] = [1e-12, 1e-4, 1e-2, 1.0, 100.0], moves "poses that are dragged";
         /// Shares of a step that are tried.
         shares_of_step: [f64; 3] = [1.0, 0.3, 0.05], moves "poses that are dragged";
-        /// A search ends where a step improves the sum of squares by less than this share.
+        /// A search ends if a step improves the sum of squares by less than this share.
         settled: f64 = 1e-10, moves "poses that are dragged";
         /// Numbers that rows and samples may come to in memory; of a longer simulation every second, third … row is
         /// examined.

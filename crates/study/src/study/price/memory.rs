@@ -52,7 +52,7 @@ fn gigabytes(bytes: &u64) -> String {
     format!("{:.1}", *bytes as f64 / 1e9)
 }
 
-/// Bytes that this program can still get, where the system says so.
+/// Bytes that this program can still get, if the system says so.
 fn free() -> Option<u64> {
     let read = |path: &str| std::fs::read_to_string(path).ok();
     let number =

@@ -29,8 +29,8 @@ pub fn planned_values(study: &Study) -> f64 {
     samples * study.rows() as f64 * study.simulator.system.outputs.len() as f64
 }
 
-/// Bytes that the simulations take where they are stored. Where a tolerance decides how many there are, as many as
-/// the budget allows.
+/// Bytes that the stored simulations take. If a tolerance determines their number, it is the one that the budget
+/// allows.
 pub fn stored_bytes(study: &Study) -> u64 {
     let problem = problem(study.description, &study.simulator);
     let (outputs, rows, methods) = (study.simulator.system.outputs.len(), study.rows(), study.request.methods());

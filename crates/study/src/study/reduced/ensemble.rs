@@ -123,7 +123,7 @@ impl<'a> ReducedEnsemble<'a> {
         &self.store.plan
     }
 
-    /// The motions of samples, cut at the events that they meet, where they are.
+    /// The motions of samples, cut at the events that they meet; `None` if they are not cut.
     ///
     /// # Errors
     /// If a sample cannot be assembled.

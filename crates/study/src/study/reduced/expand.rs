@@ -10,7 +10,7 @@ use crate::grammar::unit::Unit;
 use crate::model::{Description, Output};
 use crate::results::{Bounds, ContributionSummary, ErrorSummary, Summary};
 
-/// The model with these outputs behind its own; the model itself where it reduces and requires nothing.
+/// The model with these outputs behind its own; the model itself if it reduces and requires nothing.
 pub fn expanded(description: &Description) -> Cow<'_, Description> {
     if description.reduced.is_empty() && description.requirements.is_empty() {
         return Cow::Borrowed(description);
@@ -29,7 +29,7 @@ pub fn expanded(description: &Description) -> Cow<'_, Description> {
     Cow::Owned(expanded)
 }
 
-/// Index of the output with a formula; of a new one where none has it.
+/// Index of the output with a formula; of a new one if none has it.
 fn output_of(outputs: &mut Vec<Output>, name: &str, formula: &Formula, of_results: bool) -> usize {
     let terms = |formula: &Formula| formula.terms().iter().map(|(term, _)| term.clone()).collect::<Vec<Term>>();
     let own = terms(formula);

@@ -9,10 +9,10 @@ use crate::model::{Description, Stepping};
 use crate::numerics::clock::Instant;
 use crate::results::{Bounds, MethodSummary, RequirementSummary, Summary, Verdict};
 
-/// Said where a round was not awaited.
+/// Failure of a summary whose refining round was interrupted.
 const UNFINISHED: &str = "interrupted in a refining round: results are those of the round before";
 
-/// Runs a model; where some requirement is undecided and no tolerance is asked for, again with a higher order or
+/// Runs a model; if some requirement is undecided and no tolerance is asked for, again with a higher order or
 /// shorter steps, within the budget.
 ///
 /// # Errors

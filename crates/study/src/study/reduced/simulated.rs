@@ -6,7 +6,7 @@ use crate::simulate::Schedule;
 use crate::study::problem::Study;
 
 /// Reduced outputs of each sample, then the margins of requirements; NaN of a sample that does not reach the end.
-/// Nothing where nothing is reduced and required.
+/// Empty lists if the model reduces and requires nothing.
 pub fn values_of_samples(study: &Study, schedule: &Schedule, samples: &[Sample]) -> Vec<Vec<f64>> {
     let Some(store) = study.store.get() else { return vec![Vec::new(); samples.len()] };
     let (steps, values) = (steps_of(schedule), &store.plan.values);

@@ -5,7 +5,7 @@ use symdiff::constants::tuning;
 tuning! {
     /// Bounds of numbers of a motion, and verdicts.
     "study: reduced" {
-        /// A corner's course cuts the time instead of the nominal one where its range exceeds this multiple of the
+        /// A corner's course cuts the time instead of the nominal one if its range exceeds this multiple of the
         /// nominal one's.
         much_further: f64 = 4.0, moves "bounds of reduced outputs";
         /// Factor by which the estimate of a dip between rows may be wrong.
@@ -16,7 +16,7 @@ tuning! {
         samples_at_once: usize = 512, moves "time only";
         /// Most windows of a reduced output: a motion with more extremes has them two by two in one.
         most_windows: usize = 8, moves "bounds of reduced outputs";
-        /// A dip between two humps cuts the time where it is deeper than this share of the range.
+        /// A dip between two humps cuts the time if it is deeper than this share of the range.
         deep: f64 = 0.02, moves "bounds of reduced outputs";
         /// Most rounds of a study that refines itself, after the first.
         rounds: usize = 5, moves "studies that refine themselves";

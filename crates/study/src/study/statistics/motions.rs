@@ -118,7 +118,7 @@ impl Sampled<'_> {
         }
     }
 
-    /// Statistics of an output over the time, and where it varies most; `None` of one that no subsystem has.
+    /// Statistics of an output over the time, and where it varies most; `None` for one that no subsystem has.
     fn output(&self, output: usize) -> Option<(OutputStatistics, OutputStatisticsSummary)> {
         let (line, found) = self
             .parts

@@ -37,7 +37,7 @@ struct Together<'a> {
     least: Vec<(f64, usize)>,
 }
 
-/// All requirements, and where there are several all together.
+/// Each requirement, and if there are several all together.
 ///
 /// # Errors
 /// At an interruption.

@@ -169,7 +169,7 @@ impl<'a> Rows<'a> {
         Ok(RowStatistics { moments, linear, rss, resolved })
     }
 
-    /// The shares of the quantiles that are asked for, each with some around it where errors are those of products.
+    /// The shares of the quantiles that are asked for, each with some around it if errors are those of products.
     pub fn shares(&self, of_products: bool) -> Vec<f64> {
         let asked = &self.description.statistics.quantiles;
         match self.products.as_ref().filter(|_| of_products) {
@@ -178,7 +178,7 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// Simulated values of an output with its surrogate as control variate, where there are any.
+    /// Simulated values of an output with its surrogate as control variate, if there are any.
     fn control_variate(&self, row: usize, output: usize) -> Option<ControlVariate> {
         let products = self.products.as_ref()?;
         let surrogate = self.evaluator.values(row, &[output], &products.samples);

@@ -9,7 +9,7 @@ tuning! {
         sigmas_of_surrogate: f64 = 6.0, moves "which box surrogates of statistics have";
         /// Most samples of the surrogate of a reduced output.
         most_samples_of_numbers: usize = 1 << 18, moves "statistics of reduced outputs";
-        /// Samples where a model asks for no number: the quantiles of a normal law's three deviations need 2731.
+        /// Samples if a model asks for no number: the quantiles of a normal law's three deviations need 2731.
         samples_of_random: usize = 1 << 12, moves "statistics of random excitations";
         /// Most numbers that are stored: samples times rows times outputs.
         most_numbers_of_random: usize = 1 << 26, moves "which statistics are refused";
@@ -19,7 +19,7 @@ tuning! {
         halved: usize = 16, moves "errors of statistics of random excitations";
         /// Most samples of the surrogates of margins.
         most_samples_of_margins: usize = 1 << 18, moves "shares that fulfil requirements";
-        /// If fewer samples than this fail, samples are drawn where it fails.
+        /// If fewer samples than this fail, further samples are drawn near the failures.
         few_failing: usize = 400, moves "shares that fulfil requirements";
         /// If fewer samples than this fail, samples that are drawn at the failing points count if their interval is
         /// narrower.
@@ -40,7 +40,7 @@ tuning! {
         /// Numbers of simulations that may differ by more than ε, of which the best is taken for each quantile. The
         /// limits of the shares of all products have 95 % confidence together.
         beyond_error: [usize; 5] = [0, 4, 16, 64, 128], moves "errors of surrogates of statistics";
-        /// Samples where a model asks for no number: about a million.
+        /// Samples if a model asks for no number: about a million.
         samples: usize = 1 << 20, moves "statistics of outputs";
         /// Statistics over time use one in this many of the samples: quantiles are bands there. The row in which an
         /// output varies most has all.

@@ -118,7 +118,7 @@ pub fn events_of_parts(study: &Study, schedule: &Schedule) -> Vec<EventSummary> 
     boundaries.iter().map(of_boundary).collect()
 }
 
-/// The time up to which events are followed, where that is before the end of the rows.
+/// The time up to which events are followed, if it is before the end of the rows.
 pub fn events_followed(schedule: &Schedule) -> Option<EventsFollowed> {
     let segments = schedule.segments()?;
     let why = match segments.end? {

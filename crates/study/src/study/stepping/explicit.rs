@@ -32,7 +32,7 @@ pub enum Obstacle {
     Costlier,
 }
 
-/// Whether the explicit method may be taken: where the model asks for it, or under a tolerance where equations do
+/// Whether the explicit method may be taken: if the model asks for it, or under a tolerance if equations do
 /// not switch.
 pub fn may_be_explicit(study: &Study) -> bool {
     let simulation = &study.description.simulation;

@@ -6,11 +6,11 @@ use crate::simulate::{Integration, Schedule};
 use crate::study::stepping::tuning::TUNING;
 
 /// Divides or joins a schedule's steps until their error is within its share of the tolerance. The scheme is of second
-/// order, so that the error goes as the step's square; of higher order where steps are extrapolated, which is tried
-/// where it would take fewer.
+/// order, so that the error goes as the step's square; of higher order if steps are extrapolated, which is tried if it
+/// would take fewer.
 pub struct StepSearch {
     base: Schedule,
-    /// Steps between rows, where they are of equal length; then they can be joined too.
+    /// Steps between rows, if they are of equal length; then they can be joined too.
     per_row: Option<usize>,
     /// Steps for each of the base's; between rows where `per_row` is known.
     count: usize,
@@ -47,7 +47,7 @@ impl StepSearch {
         steps.taken(self.integration)
     }
 
-    /// Parts that each of the base's steps is divided into; 1 where steps of equal length are counted instead.
+    /// Parts that each of the base's steps is divided into; 1 if steps of equal length are counted instead.
     pub fn parts(&self) -> usize {
         if self.per_row.is_some() { 1 } else { self.count }
     }
@@ -135,7 +135,7 @@ mod tests {
         assert_eq!(found(1, 1e9), TUNING.parts);
     }
 
-    /// Levels are chosen where they take fewer steps, and left where they gain nothing.
+    /// Levels are chosen if they take fewer steps, and dropped if they gain nothing.
     #[test]
     fn levels_are_chosen_where_they_gain() {
         let search = |error: &dyn Fn(Integration, f64) -> f64| {

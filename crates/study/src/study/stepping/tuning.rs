@@ -41,11 +41,11 @@ tuning! {
         explicit_sharpest: f64 = 1e-4, moves "steps, and so the time errors and the last digits";
         /// Samples that decide on its steps: as many as are integrated together.
         explicit_samples: usize = 32, moves "steps, and so the time errors and the last digits";
-        /// Most steps where a model asks for the explicit method.
+        /// Most steps if a model asks for the explicit method.
         explicit_most_steps: usize = 1_000_000, moves "which runs are refused";
         /// Steps beyond those of the given schedule that the method may take if it is one of several.
         explicit_further_steps: usize = 500, moves "whether the explicit method is taken";
-        /// Step of the scheme that the method is compared with where the model names none, s.
+        /// Step of the scheme that the method is compared with if the model names none, s.
         typical_step: f64 = 1e-3, moves "whether the explicit method is taken";
         /// Stages of an explicit step, for the comparison.
         explicit_stages: usize = 12, moves "whether the explicit method is taken";
@@ -68,7 +68,7 @@ tuning! {
         /// Least factor by which extrapolation has to divide the error: else the motion is not smooth enough, or too
         /// stiff.
         gain: f64 = 8.0, moves "steps, and so the time errors and the last digits";
-        /// Levels that are tried first; a fourth is added where steps under them would still have to be divided into
+        /// Levels that are tried first; a fourth is added if steps under them would still have to be divided into
         /// more parts than `worth_fourth`.
         first_levels: usize = 3, moves "the steps that are chosen";
     }

@@ -38,7 +38,7 @@ impl<'p> Point<'p> {
         Self { tapes, memory, values: values.to_vec(), rows }
     }
 
-    /// The rows where the point is moved.
+    /// The rows at a moved point.
     fn at(&mut self, direction: &Direction, share: f64) -> Vec<DoubleDouble> {
         for &(register, slope) in direction {
             let moved = DoubleDouble::from(self.values[register]) + DoubleDouble::from(slope) * share.into();

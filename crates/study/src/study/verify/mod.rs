@@ -165,7 +165,7 @@ fn of_formulation(
     motions.map(|motion| along(description, simulator, &mut equations, motion, &found, options)).collect()
 }
 
-/// Verifies along a motion; along a shorter one, or with more steps, where something is so stiff that orders do not
+/// Verifies along a motion; along a shorter one, or with more steps, if something is so stiff that orders do not
 /// show with the steps of the first.
 fn along(
     description: &Description,

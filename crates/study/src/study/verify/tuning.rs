@@ -31,9 +31,9 @@ tuning! {
         many_steps: usize = 1 << 11, moves "observed orders";
         /// Nodes in time of a manufactured motion.
         nodes: usize = 96, moves "manufactured motions";
-        /// Nodes of the loads: more where functions are steep.
+        /// Nodes of the loads: more if functions are steep.
         nodes_of_loads: [usize; 2] = [96, 384], moves "manufactured motions";
-        /// Halvings of the part of the run, where polynomials do not follow the motion or its series is not resolved.
+        /// Halvings of the part of the run, if polynomials do not follow the motion or its series is not resolved.
         halvings_of_motion: usize = 8, moves "manufactured motions";
         /// Largest distance of polynomials from the nominal motion, as a share of a coordinate's range.
         near_nominal: f64 = 0.02, moves "manufactured motions";
@@ -41,11 +41,11 @@ tuning! {
         /// would show nothing. The smaller ones are used if the first has no smooth motion: a swing may leave a
         /// clearance or the steep part of friction.
         swings: [f64; 3] = [1e-2, 1e-4, 1e-6], moves "manufactured motions";
-        /// Constraints are fulfilled where residuals are less than this share of the coordinates' scale.
+        /// Constraints are fulfilled if residuals are less than this share of the coordinates' scale.
         closed_constraint: f64 = 1e-12, moves "manufactured motions";
         /// Most corrections that move a node onto the constraints.
         corrections: usize = 40, moves "manufactured motions";
-        /// A series is resolved where its last quarter is less than this share of its size.
+        /// A series is resolved if its last quarter is less than this share of its size.
         resolved_series: f64 = 1e-11, moves "manufactured motions";
         /// A series of loads, which have accelerations in them, is resolved if its last quarter is less than this
         /// share of its size.
@@ -60,7 +60,7 @@ tuning! {
         margin: f64 = 0.1, moves "which part of a motion is manufactured";
         /// Parts that are tried, the longest first.
         tried_parts: usize = 6, moves "which part of a motion is manufactured";
-        /// Parts of a run where no condition is seen to switch: friction at rest is steep in some only.
+        /// Parts of a run if no condition is seen to switch: friction at rest is steep in some only.
         parts_without_switch: usize = 8, moves "which part of a motion is manufactured";
         /// Shortest part, in rows of the nominal motion.
         shortest_part: usize = 16, moves "which part of a motion is manufactured";

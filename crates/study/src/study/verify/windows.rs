@@ -4,8 +4,8 @@ use super::fit::Nominal;
 use super::motion::{EquationsAtPoint, Manufactured};
 use super::tuning::TUNING;
 
-/// The parts between the instants at which conditions change their sign, without the first one; where none does, none,
-/// or equal parts of the run where its begin has no smooth motion.
+/// The parts between the instants at which conditions change their sign, without the first one; if none does, none,
+/// or equal parts of the run if its begin has no smooth motion.
 fn parts(nominal: &Nominal, equations: &mut EquationsAtPoint, begins: bool) -> Vec<[f64; 2]> {
     let signs: Vec<Vec<bool>> = (0..nominal.times.len()).map(|row| equations.conditions(nominal, row)).collect();
     let switches = (1..signs.len()).filter(|&row| signs[row] != signs[row - 1]);
