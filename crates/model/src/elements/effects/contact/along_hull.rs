@@ -14,8 +14,8 @@
 //! largest is the distance (Ericson, *Real-Time Collision Detection* (2005), ch. 5 and 9).
 //!
 //! Where the line is parallel to a face or an edge several are the largest. Those within s = 10⁻⁴ M of it have a share
-//! that falls with their distance to it: t is their mean, the middle of the part beside the hull, and goes to the lower
-//! end within an angle of 10⁻⁴. Where the line passes through the hull, t is the middle of the part within.
+//! that falls with their distance to it: t is their mean, the middle of the part next to the hull, and moves to the
+//! lower end within an angle of 10⁻⁴. Where the line passes through the hull, t is the middle of the part within.
 
 use symdiff::Scalar;
 
@@ -24,7 +24,7 @@ use super::solid::Segment;
 use crate::multibody::Vector;
 use crate::elements::tuning::TUNING;
 
-/// A feature that is nearest, as far as it is known: its distance, not positive where it is not, and t.
+/// Candidate for the nearest feature: its distance, not positive where the feature is not nearest, and t.
 type Candidate<'g> = (Scalar<'g>, Scalar<'g>);
 
 /// A line in the hull's frame.
@@ -35,7 +35,7 @@ struct Line<'g> {
     length: Scalar<'g>,
     /// Each end with its t and the way along the line from it.
     ends: [(Vector<'g>, Scalar<'g>, Vector<'g>); 2],
-    /// What conditions may lack.
+    /// Amount by which conditions may fall short.
     slack: f64,
 }
 

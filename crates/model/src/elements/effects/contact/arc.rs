@@ -45,12 +45,12 @@ impl<'g> Arc<'g> {
         (from.dot(from) + centred * centred).sqrt()
     }
 
-    /// How far a place is to the left of it.
+    /// Distance of a point to the left of the arc, with a sign.
     pub fn beside(&self, place: Vector<'g>) -> Scalar<'g> {
         self.turn * (self.radius - self.distance(place))
     }
 
-    /// Positive where a place is after the start, and where it is past the end.
+    /// Two values, positive where a point is after the start and where it is past the end.
     pub fn ends(&self, place: Vector<'g>) -> [Scalar<'g>; 2] {
         let from = place - self.middle;
         let [after, past] = self.ends.map(|end| self.turn / self.radius * (end - self.middle).cross(from)[2]);
@@ -58,7 +58,7 @@ impl<'g> Arc<'g> {
         [second_half.select(self.radius, after), second_half.select(past, -self.radius)]
     }
 
-    /// From the nearest point to a place.
+    /// Vector from the nearest point of the arc to another point.
     pub fn across(&self, place: Vector<'g>, [after, past]: [Scalar<'g>; 2]) -> Vector<'g> {
         let distance = self.distance(place);
         let radial = (1.0 - self.radius / distance) * (place - self.middle);
@@ -67,7 +67,7 @@ impl<'g> Arc<'g> {
         [component(0), component(1), after.builder().number(0.0)].into()
     }
 
-    /// The square of the distance from a place.
+    /// Square of a point's distance from the arc.
     pub fn square(&self, place: Vector<'g>, [after, past]: [Scalar<'g>; 2]) -> Scalar<'g> {
         let off = self.radius - self.distance(place);
         let [from_start, from_end] = self.ends.map(|end| {

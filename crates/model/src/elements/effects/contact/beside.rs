@@ -43,7 +43,7 @@ pub fn nearest_to_block<'g>(
         for face in [half, -half] {
             let place = within((face - start[axis]) * steepness);
             let slope = slope(place);
-            // Of places with a slope that is not positive the last, of the others the first.
+            // The last of the points with a slope that is not positive, and the first of the others.
             let is_later = (place - before.0).min(-slope);
             let is_earlier = (after.0 - place).min(slope);
             before = (is_later.select(place, before.0), is_later.select(slope, before.1));

@@ -68,7 +68,7 @@ pub struct ContactLine(Vec<Stop>);
 #[derive(Clone, Debug)]
 struct Stop {
     place: [Formula; 3],
-    /// Of the arc from the point before; straight without.
+    /// Radius of the arc from the point before; `None` for a straight edge.
     radius: Option<Formula>,
 }
 

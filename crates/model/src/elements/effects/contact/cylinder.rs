@@ -1,4 +1,4 @@
-//! What the second body of a contact touches with: a cylinder with flat faces.
+//! A cylinder with flat faces on the second body of a contact.
 //!
 //! ```text
 //! faces about b and b + M v, radius r; a place p = b + t v + l with l across v
@@ -12,7 +12,7 @@
 //!
 //! n pushes the cylinder. g grows with τ: sixteen halvings find its root, and two steps of Newton's method from there
 //! make it smooth. Where the line is parallel to the side or to a face many points are as near: m, the middle of the
-//! part beside it, takes over within an angle of 10⁻⁴.
+//! part next to it, takes over within an angle of 10⁻⁴.
 //!
 //! At φ = 0 each rim's deepest point touches, so that a cylinder rolls on the line between two of them and tips about
 //! its rim; on a face it stands on three. There p is 0: up to an angle of ε = 10⁻³ a direction e of the body turns into
@@ -70,7 +70,7 @@ impl<'g> ContactCylinder<'g> {
         Touch::at(nearest, Gap { gap, normal, overlap: reach * reach - square_of_way, near: None })
     }
 
-    /// The place p on a line of the ground's frame that is nearest to it; `reach` is ρ.
+    /// The point p on a line of the ground's frame that is nearest to it; `reach` is ρ.
     pub fn nearest_on(&self, pair: &Pair<'g>, line: Segment<'g>, reach: Scalar<'g>) -> Vector<'g> {
         let (from, tangent, length) = line;
         let beside = Beside::of(self, pair, line, reach);
@@ -114,7 +114,7 @@ impl<'g> ContactCylinder<'g> {
     }
 }
 
-/// A line beside a cylinder: t = t₀ + τ t′, l² = A + 2 B τ + C τ².
+/// A line next to a cylinder: t = t₀ + τ t′, l² = A + 2 B τ + C τ².
 struct Beside<'g> {
     height: Scalar<'g>,
     radius: Scalar<'g>,

@@ -16,7 +16,7 @@ use super::solid::Solid;
 use super::touch::{WholeSurface, ContactSurface, Touch};
 use crate::multibody::{Pair, Vector};
 
-/// All places where they may touch.
+/// All points where they may touch.
 pub fn touches<'g>(surface: &ContactSurface<'g>, cylinder: &ContactCylinder<'g>, pair: &Pair<'g>) -> Vec<Touch<'g>> {
     let ContactSurface::Whole(shape) = surface else { return Vec::new() };
     let point = cylinder.radius.builder().number(0.0);

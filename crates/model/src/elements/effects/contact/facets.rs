@@ -17,7 +17,7 @@ pub struct Facets<'g> {
 }
 
 impl<'g> Facets<'g> {
-    /// Of a block of half-sizes about the origin.
+    /// Facets of a block of half-sizes about the origin.
     pub fn of_block(half: [Scalar<'g>; 3]) -> Self {
         let g = half[0].builder();
         let sign = |corner: usize, axis: usize| if corner >> axis & 1 == 0 { -1.0 } else { 1.0 };
@@ -30,7 +30,7 @@ impl<'g> Facets<'g> {
         Self { corners: (0..8).map(corner).collect(), edges: edges.collect(), faces: faces.collect() }
     }
 
-    /// Of a convex hull.
+    /// Facets of a convex hull.
     pub fn of_hull(hull: &Hull, g: &'g Builder) -> Self {
         let edges = hull
             .edges

@@ -1,4 +1,4 @@
-//! What contacts measure.
+//! Measured quantities of contacts.
 
 use symdiff::Scalar;
 
@@ -6,7 +6,7 @@ use crate::elements::effects::{Forces, TypedSensor};
 use crate::grammar::Sensor;
 use crate::grammar::quantity::Dimension;
 
-/// What two surfaces measure.
+/// Sensors of two surfaces.
 pub const SENSORS: &[TypedSensor] = &[
     (Sensor::GAP, Dimension::LENGTH),
     (Sensor::RATE, Dimension::VELOCITY),
@@ -28,7 +28,7 @@ pub struct Felt<'g> {
 }
 
 impl<'g> Felt<'g> {
-    /// Of both together: the smaller gap, and the sum of the forces.
+    /// Combines two contacts: the smaller gap with its rate, and the sums of the forces.
     pub fn and(self, other: Self) -> Self {
         Self {
             gap: self.gap.min(other.gap),

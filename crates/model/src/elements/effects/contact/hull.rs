@@ -67,7 +67,7 @@ pub struct Edge {
 }
 
 impl Edge {
-    /// In a face, across the edge to the inside, where it is one of that face.
+    /// Direction in a face, across the edge to the inside; `None` if the edge is not one of that face.
     pub fn inward_of(&self, face: usize) -> Option<Point> {
         self.faces.iter().zip(self.inward).find(|(number, _)| **number == face).map(|(_, inward)| inward)
     }
@@ -82,7 +82,7 @@ pub struct Hull {
 }
 
 impl Hull {
-    /// Of points; `None` where they lie in a plane.
+    /// Convex hull of points; `None` if they lie in a plane.
     pub fn of(points: Vec<Point>) -> Option<Self> {
         let size = points
             .iter()
@@ -142,7 +142,7 @@ impl Hull {
         let (square, way) = self.beside_edges(g, place);
         let above = depth.max(g.number(0.0));
         let is_beside = square - above * above;
-        // No root of zero, also where it is not used.
+        // Avoids the root of zero, even where its result is not used.
         let distance = is_beside.select(square, g.number(1.0)).sqrt();
         let gap = is_beside.select(distance, depth) - reach;
         let normal = [0, 1, 2].map(|axis| is_beside.select(way[axis] / distance, face[axis]));
@@ -184,8 +184,8 @@ impl Hull {
         best.unwrap_or((g.number(0.0), [g.number(0.0); 3]))
     }
 
-    /// The square of the greatest distance from an edge or a corner beside which the place is, zero where it is beside
-    /// none, and the way from there.
+    /// Square of the greatest distance from an edge or corner whose region contains the place, and the vector from
+    /// there; zero where no region does.
     fn beside_edges<'g>(&self, g: &'g Builder, place: Vector<'g>) -> (Scalar<'g>, [Scalar<'g>; 3]) {
         let zero = g.number(0.0);
         let mut best = (zero, [zero; 3]);

@@ -79,7 +79,7 @@ pub struct Contact {
     /// Instead of `plane`: radius of a circle, sphere or cylinder.
     #[quantity(unit = "m", constant, positive)]
     pub circle: Option<Formula>,
-    /// Of the second; with 0 it is a point.
+    /// Radius of the second body's surface; with 0 it is a point.
     #[quantity(unit = "m", constant, nonnegative, default = 0)]
     pub radius: Formula,
     /// Instead of `plane`: radius of a hollow circle, sphere or cylinder that the second is in.
@@ -191,8 +191,8 @@ fn direction<'g>(forces: &dyn Forces<'g>, formulas: &[Formula; 3]) -> Result<Vec
 }
 
 impl Contact {
-    /// How deep the surfaces may overlap: to the line or the edge that one of them is about. `None` where that does not
-    /// matter, or where there is nothing about it.
+    /// Largest overlap of the surfaces: up to the line or the edge that one of them surrounds. `None` if overlaps may
+    /// be of any depth, or if the surfaces surround nothing with a radius.
     fn deepest<'g>(
         &self,
         forces: &dyn Forces<'g>,
@@ -208,7 +208,7 @@ impl Contact {
         Ok((!deepest.is_zero()).then_some(deepest))
     }
 
-    /// Of the first body.
+    /// Surface of the first body.
     fn surface<'g>(&self, forces: &dyn Forces<'g>, radius: Scalar<'g>) -> Result<Option<ContactSurface<'g>>, BuildError> {
         // A cylinder's axis is no line that all of it is about.
         let around = if self.cylinder.is_some() { forces.graph().number(0.0) } else { radius };
@@ -233,7 +233,7 @@ impl Contact {
         }))
     }
 
-    /// Where the surface touches what the second body has.
+    /// Where the surface touches the forms of the second body.
     fn touches<'g>(
         &self,
         forces: &dyn Forces<'g>,

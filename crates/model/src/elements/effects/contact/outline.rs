@@ -41,7 +41,7 @@ struct Edge<'g> {
     tangent: Vector<'g>,
     /// L, m
     length: Scalar<'g>,
-    /// Where it is none of them: an arc between its ends.
+    /// Arc between its ends; `None` for a straight edge.
     arc: Option<Arc<'g>>,
 }
 
@@ -60,19 +60,19 @@ struct Place<'g> {
     centre: Vector<'g>,
 }
 
-/// What the edges do together.
+/// Sum of the forces of all edges.
 struct Sum<'g> {
     force: Vector<'g>,
     torque: Vector<'g>,
     push: Scalar<'g>,
     friction: Vector<'g>,
-    /// Of the friction along the surface, clockwise about it.
+    /// Friction along the surface, positive clockwise about it.
     along: Scalar<'g>,
     energy: Scalar<'g>,
 }
 
 impl<'g> ContactEdges<'g> {
-    /// Through points, and back to the first where it is closed.
+    /// Outline through points, and back to the first if it is closed.
     pub fn through(corners: &[Corner<'g>], closed: bool, rounding: Scalar<'g>, radius: Scalar<'g>) -> Self {
         let last = closed.then(|| (corners.last(), corners.first()));
         let pairs = corners.windows(2).map(|pair| (pair.first(), pair.last())).chain(last);
@@ -156,7 +156,7 @@ impl<'g> ContactEdges<'g> {
         sum
     }
 
-    /// What an edge does, where no neighbour does it in its place.
+    /// `value`, the contribution of an edge; zero where a neighbour acts in its place.
     fn kept(
         &self,
         places: &[Place<'g>],

@@ -56,7 +56,7 @@ impl<'g> Polyhedron<'g> {
         Self { facets: Facets::of_hull(&hull, radius.builder()), body: Body::Hull(hull), radius }
     }
 
-    /// All places where they may touch.
+    /// All points where they may touch.
     pub fn touches(&self, surface: &ContactSurface<'g>, pair: &Pair<'g>) -> Vec<Touch<'g>> {
         let ContactSurface::Whole(shape) = surface else { return Vec::new() };
         let on_corners = || {
@@ -107,7 +107,7 @@ impl<'g> Polyhedron<'g> {
         all.into_iter().map(|touch| self.near(touch, reach, radius, pair)).collect()
     }
 
-    /// As a surface, for what touches it within a reach.
+    /// The polyhedron as a surface, for contacts with whatever is within a reach of it.
     fn shape(&self, reach: Scalar<'g>) -> WholeSurface<'g> {
         match &self.body {
             Body::Block(half) => WholeSurface::Solid(Solid::Block { half: half.map(Some) }, reach),

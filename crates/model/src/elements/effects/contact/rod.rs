@@ -1,4 +1,4 @@
-//! What the second body of a contact touches with: a capsule about a line in its frame.
+//! A capsule on the second body of a contact, about a line in that body's frame.
 //!
 //! ```text
 //! line from b along v, length M, against one from a along u, length L; r = a − b:

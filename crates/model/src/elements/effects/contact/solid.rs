@@ -24,7 +24,7 @@ pub struct Gap<'g> {
     pub gap: Scalar<'g>,
     /// The direction in which the second is pushed.
     pub normal: Vector<'g>,
-    /// Positive where they overlap; as few operations as tell.
+    /// Positive where they overlap; computed with the fewest operations.
     pub overlap: Scalar<'g>,
     /// Not positive where both are so far apart that nothing else is needed, if there is anything so cheap.
     pub near: Option<Scalar<'g>>,
@@ -75,7 +75,7 @@ impl<'g> Solid<'g> {
         let away = self.away(place);
         let square = g.dot(&away, &away);
         let overlap = reach * reach - square;
-        // No root of zero, also where it is not used.
+        // Avoids the root of zero, even where its result is not used.
         let distance = square.select(square, g.number(1.0)).sqrt();
         let normal = away.map(|part| part / distance);
         let Self::Block { half } = self else {

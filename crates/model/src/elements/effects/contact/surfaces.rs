@@ -11,7 +11,7 @@ fn number(value: f64) -> Formula {
     Formula::number(value)
 }
 
-/// Of the first body, in the first point's frame.
+/// Surface of the first body, in the first point's frame.
 pub fn of_first(contact: &Contact, surroundings: Surroundings) -> Option<Form<Formula>> {
     let radius = contact.rounding.clone();
     let axis = contact.axis.as_ref().filter(|_| surroundings.spatial).map(|axis| axis.0.clone());
@@ -42,7 +42,7 @@ pub fn of_first(contact: &Contact, surroundings: Surroundings) -> Option<Form<Fo
     }
 }
 
-/// Of the second body, in the second point's frame.
+/// Surfaces of the second body, in the second point's frame.
 pub fn of_second(contact: &Contact, surroundings: Surroundings) -> Vec<Shape> {
     let radius = contact.radius.clone();
     let form = if let Some(ends) = &contact.line {
@@ -54,7 +54,7 @@ pub fn of_second(contact: &Contact, surroundings: Surroundings) -> Vec<Shape> {
     } else if let Some(points) = &contact.polyhedron {
         Some(Form::Hull { points: points.to_vec(), radius })
     } else if let Some(corners) = contact.corners.as_ref().filter(|corners| corners.len() > 2) {
-        // A rigid body that touches with its corners: what lies between them is of it, too.
+        // A rigid body that touches with its corners also contains the space between them.
         Some(Form::Hull { points: corners.to_vec(), radius })
     } else if contact.radius.as_number() == Some(0.0) {
         None
@@ -68,7 +68,7 @@ pub fn of_second(contact: &Contact, surroundings: Surroundings) -> Vec<Shape> {
     form.map(Shape::in_place).into_iter().collect()
 }
 
-/// A ball, or a cylinder where it has an axis, whose length nothing says.
+/// A ball, or a cylinder if it has an axis; nothing determines the cylinder's length.
 fn round(axis: Option<[Formula; 3]>, radius: &Formula) -> Form<Formula> {
     match axis {
         Some(axis) => {

@@ -1,4 +1,4 @@
-//! What touches in a contact: the first body's surface, and the forces on a circle, sphere or point of the second.
+//! The first body's surface in a contact, and its forces on a circle, sphere or point of the second.
 //!
 //! The equations are in `contact`.
 
@@ -18,15 +18,15 @@ use super::solid::{Gap, Solid};
 use crate::multibody::{Pair, Vector};
 use crate::elements::tuning::TUNING;
 
-/// What the first body's surface is made of.
+/// Surface of the first body.
 pub enum ContactSurface<'g> {
     Whole(WholeSurface<'g>),
     Edges(ContactEdges<'g>),
 }
 
 impl<'g> ContactSurface<'g> {
-    /// Positive where what lies within a radius about a line of the second body may touch a solid; `None` of other
-    /// surfaces, which are found at once.
+    /// Positive where the points within a radius about a line of the second body may touch a solid; `None` for other
+    /// surfaces, whose contacts are found at once.
     pub fn is_near(&self, line: &Rod<'g>, radius: Scalar<'g>, pair: &Pair<'g>) -> Option<Scalar<'g>> {
         let (solid, reach) = match self {
             Self::Whole(WholeSurface::Solid(solid, reach)) => (solid.radius(reach.builder()), *reach),
@@ -50,7 +50,7 @@ impl<'g> ContactSurface<'g> {
     }
 }
 
-/// The first body's surface, where it is one.
+/// A surface of the first body that is not made of edges.
 #[derive(Clone, Debug)]
 pub enum WholeSurface<'g> {
     /// A unit normal, in the first frame.
@@ -67,7 +67,7 @@ pub enum WholeSurface<'g> {
     Hull(Rc<Hull>, Scalar<'g>),
 }
 
-/// What two surfaces do to one another.
+/// Forces between two surfaces.
 #[derive(Clone, Copy, Debug)]
 pub struct ContactLaw<'g> {
     pub impact: Push<'g>,
@@ -77,7 +77,7 @@ pub struct ContactLaw<'g> {
 }
 
 impl<'g> ContactLaw<'g> {
-    /// Adds the forces at a place; `moving` is the first surface's velocity beyond its body's.
+    /// Adds the forces at a point; `moving` is the first surface's velocity beyond its body's.
     pub fn act(
         &self,
         forces: &mut dyn Forces<'g>,
@@ -135,12 +135,12 @@ pub struct Touch<'g> {
 }
 
 impl<'g> Touch<'g> {
-    /// Of surfaces at rest on their bodies.
+    /// Touch of surfaces at rest on their bodies.
     pub fn at(place: Vector<'g>, gap: Gap<'g>) -> Self {
         Self { gap, place, moving: None }
     }
 
-    /// Of the same surfaces, with the first and the second exchanged.
+    /// Touch of the same surfaces, with the first and the second exchanged.
     pub fn reversed(mut self) -> Self {
         self.gap.normal = -self.gap.normal;
         self
