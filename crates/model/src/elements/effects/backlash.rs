@@ -40,13 +40,13 @@ pub struct Backlash {
     #[quantity(unit = "rad", constant, default = 0)]
     #[key(image = Turning)]
     pub offset: Formula,
-    /// Angle by which the second can turn while the first is held.
+    /// Angle by which the second can turn while the first is fixed.
     #[quantity(unit = "rad", constant, nonnegative)]
     pub backlash: Formula,
-    /// Of the teeth at the second.
+    /// Stiffness of the teeth, referred to the second.
     #[quantity(unit = "N*m/rad")]
     pub stiffness: Formula,
-    /// Of the teeth at the second.
+    /// Damping of the teeth, referred to the second.
     #[quantity(unit = "N*m*s/rad", default = 0)]
     pub damping: Formula,
     /// Angle over which teeth come to bear, either way.

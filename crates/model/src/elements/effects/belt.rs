@@ -44,10 +44,10 @@ use crate::elements::tuning::TUNING;
 pub struct Belt {
     /// Two bodies (their angles about z) or two joints.
     between: [Rotating; 2],
-    /// Of the first pulley.
+    /// Radius of the first pulley.
     #[quantity(unit = "m", constant, positive)]
     first_radius: Formula,
-    /// Of the second pulley.
+    /// Radius of the second pulley.
     #[quantity(unit = "m", constant, positive)]
     second_radius: Formula,
     /// How the strands run.
@@ -57,10 +57,10 @@ pub struct Belt {
     #[quantity(unit = "rad", constant, default = 0)]
     #[key(image = Turning)]
     offset: Formula,
-    /// Of each strand: tension by stretch.
+    /// Stiffness of each strand: tension by stretch.
     #[quantity(unit = "N/m", constant, positive)]
     stiffness: Formula,
-    /// Of each strand while taut: tension by rate of stretch.
+    /// Damping of each strand while taut: tension by rate of stretch.
     #[quantity(unit = "N*s/m", default = 0)]
     damping: Formula,
     /// Tension of both strands where no torque is carried.
@@ -69,7 +69,7 @@ pub struct Belt {
     /// Centres of the pulleys, which the strands pull together; each `body.point` or `body`.
     #[key(otherwise = "the shafts do not feel the belt, and their distance does not change it")]
     centers: Option<[PointRef; 2]>,
-    /// Of the centres, where the preload holds; goes with `centers`.
+    /// Distance of the centres at which the preload holds; goes with `centers`.
     #[quantity(unit = "m", constant, positive)]
     distance: Option<Formula>,
     /// Stretch over which a strand becomes taut, either way.

@@ -8,7 +8,7 @@
 //! τ₂  = −(2 q₀ K_t e + 2 e × K_t e + C_t (ω₂ − ω₁))                                           N m
 //! ```
 //!
-//! on the second body at B; the opposites act on the first body at the same place. ḋ is what an observer in the first
+//! on the second body at B; the opposites act on the first body at the same point. ḋ is what an observer in the first
 //! frame sees. 2 e is the rotation vector to second order, so K_t is the stiffness for small rotations, the torque of a
 //! rotation by φ about an axis K_t sin φ: a bushing is no spring for full turns.
 //!
@@ -117,7 +117,7 @@ impl ForceElement for Bushing {
     }
 }
 
-/// Stiffness or damping: by axis and, where there is one, the full matrix.
+/// Stiffness or damping: by axis, and the full matrix if there is one.
 struct Law<'g> {
     straight: Vector<'g>,
     torsional: Vector<'g>,

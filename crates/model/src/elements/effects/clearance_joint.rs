@@ -1,4 +1,4 @@
-//! A journal that is loose in its bearing: what a revolute joint is with a tolerance.
+//! A journal that is loose in its bearing: a revolute joint with a tolerance.
 //!
 //! ```text
 //! gap = c − |d|,   d = r_J − r_B across the axis,   c = R − r          m, forces as in `contact`
@@ -34,7 +34,7 @@ pub struct ClearanceJoint {
     /// Radius of the bearing less that of the journal.
     #[quantity(unit = "m", constant, positive)]
     clearance: Formula,
-    /// Of the journal.
+    /// Radius of the journal.
     #[quantity(unit = "m", constant, positive, default = 0)]
     radius: Formula,
     /// Direction in the bearing's frame.

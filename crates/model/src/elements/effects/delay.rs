@@ -1,4 +1,4 @@
-//! What an input was some time ago, by a rational law.
+//! An input delayed by a time, approximated by a rational law.
 //!
 //! ```text
 //! e^(−s T) ≈ N(−s T)/D(s T),    N(x) = Σ cₖ xᵏ, k ≤ n − 1,    D(x) = Σ dₖ xᵏ, k ≤ n

@@ -32,13 +32,13 @@ pub struct Drag {
     /// Force by the square of the speed; or `density`, `drag_coefficient` and `area`.
     #[quantity(unit = "N*s^2/m^2")]
     quadratic: Option<Formula>,
-    /// Of the fluid.
+    /// Density of the fluid.
     #[quantity(unit = "kg/m^3")]
     density: Option<Formula>,
     /// c_d, a pure number.
     #[quantity(unit = "1")]
     drag_coefficient: Option<Formula>,
-    /// That c_d refers to.
+    /// Area that c_d refers to.
     #[quantity(unit = "m^2")]
     area: Option<Formula>,
     /// Force by the speed.

@@ -47,11 +47,11 @@ pub struct Filter {
     numerator: Vec<Formula>,
     /// aₙ … a₀, of parameters.
     denominator: Vec<Formula>,
-    /// u₀, of parameters, where it is not 0.
+    /// u₀, of parameters; `None` for 0.
     initial: Option<Formula>,
     /// x₁ … xₙ at the start, of parameters.
     start: Vec<Formula>,
-    /// Of y, where it is known.
+    /// Dimension of y; `None` if unknown.
     dimension: Option<Dimension>,
 }
 
@@ -254,7 +254,7 @@ impl Group for Filter {
 /// A list of coefficients, the highest power of s first.
 struct Coefficients {
     formulas: Vec<Formula>,
-    /// Of the last, where it is known.
+    /// Dimension of the last; `None` if unknown.
     dimension: Option<Dimension>,
 }
 

@@ -19,7 +19,7 @@ pub trait Forces<'g> {
     fn time(&self) -> Scalar<'g>;
     /// A formula of parameters, t, positions, velocities and reactions.
     fn value(&self, formula: &Formula) -> Result<Scalar<'g>, BuildError>;
-    /// The same of a formula that may refer to what the effect itself measures.
+    /// Same as [`value`](Self::value) for a formula that may refer to the effect's own sensors.
     fn value_with(&self, formula: &Formula, own: &[(Sensor, Scalar<'g>)]) -> Result<Scalar<'g>, BuildError>;
     /// A formula of parameters and t.
     fn prescribed(&self, formula: &Formula) -> Result<Scalar<'g>, BuildError>;
@@ -28,7 +28,7 @@ pub trait Forces<'g> {
     /// Three formulas of parameters and t.
     fn prescribed_vector(&self, formulas: &[Formula; 3]) -> Result<Vector<'g>, BuildError>;
 
-    /// A height of parameters, of t and of the place along the ground, as a function of that.
+    /// A height, formula of parameters, t and the position along the ground, as a function of that position.
     fn of_place(&self, formula: &OfPlace) -> Result<OwnFunction<'g>, BuildError>;
 
     /// A named point.
@@ -52,7 +52,7 @@ pub trait Forces<'g> {
     /// A joint's reaction on its second body, in the ground's axes: force, N, and torque about the second point, N m.
     fn reaction(&self, joint: usize) -> [Vector<'g>; 2];
 
-    /// The multiplier of a joint's one constraint; `None` where it has none, or nothing that it constrains can move.
+    /// The multiplier of a joint's one constraint; `None` if it has none, or if nothing that it constrains can move.
     fn multiplier(&self, joint: usize) -> Option<Scalar<'g>>;
     /// How the teeth of a joint rub.
     fn meshing(&self, joint: usize) -> Result<Option<Meshing<'g>>, BuildError>;

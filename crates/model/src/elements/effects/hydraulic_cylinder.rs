@@ -12,8 +12,8 @@
 //! Chamber 1 is that of the piston's full face, 2 that of the rod. x is the valve's opening: with x > 0 oil flows from
 //! the supply to chamber 1 and from 2 to the tank. Flow through an edge grows with the root of its drop of pressure
 //! (Merritt, *Hydraulic Control Systems* (1967), sec. 3.2, 5.1, 6.1), below δ with the drop itself, so that its
-//! derivative is finite; ε is the overlap of the edges. The cylinder has no ends: a `stop` is what holds it. Where a
-//! pressure would be negative, oil would boil, and this is no model of it.
+//! derivative is finite; ε is the overlap of the edges. The cylinder has no ends: a `stop` limits it. Where a pressure
+//! would be negative, oil would boil, which this model does not describe.
 
 use std::f64::consts::FRAC_PI_4;
 
@@ -62,7 +62,7 @@ pub struct HydraulicCylinder {
     /// The piston's way.
     #[quantity(unit = "m", constant, positive)]
     pub stroke: Formula,
-    /// Volume of oil that each chamber has beside the piston's way, with its hose.
+    /// Volume of oil in each chamber in addition to the piston's way, with its hose.
     #[quantity(unit = "m^3", constant, positive)]
     pub dead_volume: Formula,
     /// Bulk modulus of the oil.

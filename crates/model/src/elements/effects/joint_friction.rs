@@ -55,10 +55,10 @@ pub struct JointFriction {
     /// Force by speed.
     #[quantity(unit = "N*s/m or N*m*s/rad", default = 0)]
     pub viscous: Formula,
-    /// Of the pin; needed where something turns and has a `coefficient`.
+    /// Radius of the pin; needed where something turns and has a `coefficient`.
     #[quantity(unit = "m", constant, positive)]
     pub radius: Option<Formula>,
-    /// Of the bearing along its axis: then the torque across the axis presses on its ends.
+    /// Length of the bearing along its axis; with it, the torque across the axis presses on the bearing's ends.
     #[quantity(unit = "m", constant, positive)]
     pub length: Option<Formula>,
 }

@@ -1,4 +1,4 @@
-//! Effects: what moves bodies.
+//! Effects, which move bodies.
 //!
 //! To add one: its file here, and its line in the registry below. All else follows from the file: keys, schema,
 //! documentation, its references, its forces, its cost.
@@ -60,7 +60,7 @@ effects! {
 /// A sensor of an effect, with its description.
 pub type TypedSensor = (Sensor, Dimension);
 
-/// What an effect does.
+/// A kind of effect: its sensors, its forces and its properties.
 pub trait ForceElement: Element {
     /// Sensors; its own formulas may refer to those that follow from the motion.
     const SENSORS: &'static [TypedSensor];
@@ -138,7 +138,7 @@ pub struct StateVariable<'a> {
     pub period: Option<f64>,
 }
 
-/// What an effect acts on.
+/// Objects that an effect acts on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scope {
     /// The bodies and joints that it names.
@@ -162,7 +162,7 @@ pub struct LineMass<'a> {
     pub length: &'a Formula,
     /// kg/m
     pub mass_per_length: &'a Formula,
-    /// In space: by what its sections have inertia of rotation.
+    /// In space: stiffness of its sections, which determines their inertia of rotation.
     pub section: Option<Section<'a>>,
 }
 
@@ -173,7 +173,7 @@ pub struct ReducedInertia<'a> {
     pub nodes: &'a [PointRef],
     /// The matrices, and where the nodes are at rest.
     pub matrices: &'a Matrices,
-    /// By what the mass matrix is multiplied.
+    /// Factor of the mass matrix.
     pub factor: &'a Formula,
 }
 
@@ -186,7 +186,7 @@ pub struct Section<'a> {
     pub bending_stiffness: [&'a Formula; 2],
 }
 
-/// What pushes a joint's coordinate.
+/// Sensor of the force or torque on a joint's coordinate.
 fn effort(on: OnJoint) -> TypedSensor {
     let [_, _, dimension] = crate::grammar::motions::dimensions_of(on.coordinate);
     (Sensor::of_effort(on.coordinate), dimension)

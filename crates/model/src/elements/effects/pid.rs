@@ -45,11 +45,11 @@ pub struct Pid {
     /// The joint's coordinate.
     #[group]
     on: OnJoint,
-    /// What the coordinate should be; may depend on t, states, positions and velocities.
+    /// Target value of the coordinate; may depend on t, states, positions and velocities.
     #[quantity(unit = "m or rad")]
     #[key(image = Turning)]
     target: Formula,
-    /// How fast the target changes, where it depends on more than t.
+    /// How fast the target changes, if it depends on more than t.
     #[quantity(unit = "m/s or rad/s", otherwise = "the target's derivative by t")]
     #[key(image = Turning)]
     target_rate: Option<Formula>,

@@ -27,15 +27,15 @@ use crate::multibody::BuildError;
 pub struct RateLimit {
     /// u, may depend on t, positions, velocities and states.
     input: Formula,
-    /// R, of parameters, where there is one.
+    /// R, of parameters; `None` for no limit of the rate.
     rate: Option<Formula>,
     /// T, of parameters, s.
     lag: Formula,
-    /// Of parameters, both or none.
+    /// Lower and upper limit, of parameters; `None` for no limits.
     limits: Option<[Formula; 2]>,
     /// y₀, of parameters.
     initial: Formula,
-    /// Of y, where it is known.
+    /// Dimension of y; `None` if unknown.
     dimension: Option<Dimension>,
 }
 
@@ -153,7 +153,7 @@ impl Group for RateLimit {
     }
 }
 
-/// A number of parameters, in any unit: `None` where it is wrong, `Some(None)` where it is not given.
+/// A number of parameters, in any unit: `None` if it is wrong, `Some(None)` if it is not given.
 fn constant<S: SymbolTable>(
     reader: &mut Reader<'_, S>,
     fields: &Fields<'_>,

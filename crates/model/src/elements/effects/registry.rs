@@ -54,8 +54,8 @@ macro_rules! effects {
                 }
             }
 
-            /// Whether the name of what an entry describes stands for a state, and of which dimension, as far as that
-            /// is known.
+            /// Dimension of the state that the name of an entry stands for, as far as it is known; `None` if the name
+            /// does not stand for a state.
             pub fn value_ahead<S: $crate::grammar::SymbolTable>(
                 reader: &mut $crate::grammar::Reader<'_, S>,
                 entry: &$crate::grammar::Node,
@@ -66,7 +66,7 @@ macro_rules! effects {
                 None
             }
 
-            /// Of every effect, in the order of the registry.
+            /// Documentation of every effect, in the order of the registry.
             pub fn docs() -> Vec<$crate::grammar::ElementDocs> {
                 vec![$(with_sensors::<$name>()),*]
             }
@@ -138,8 +138,7 @@ macro_rules! effects {
                 }
             }
 
-            /// What the keys of a kind are to an instance that is mirrored or turned; `None` where there is no such
-            /// kind.
+            /// Images of the keys of a kind in an instance that is mirrored or turned; `None` if there is no such kind.
             pub fn images(keyword: &str) -> Option<Vec<$crate::grammar::KeyImage>> {
                 match keyword {
                     $(<$name as $crate::grammar::Element>::KEYWORD => Some(<$name as $crate::grammar::Group>::images()),)*
@@ -164,7 +163,7 @@ macro_rules! effects {
                 }
             }
 
-            /// What a kind of effect acts on; `None` where there is no such kind.
+            /// Objects that a kind of effect acts on; `None` if there is no such kind.
             pub fn scope_of(keyword: &str) -> Option<Scope> {
                 match keyword {
                     $(<$name as $crate::grammar::Element>::KEYWORD => Some(<$name as ForceElement>::SCOPE),)*

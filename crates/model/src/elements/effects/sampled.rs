@@ -1,13 +1,13 @@
-//! A number that is computed every T seconds and held in between: what a digital controller knows or commands.
+//! A number that is computed every T seconds and constant in between: a measured or commanded value of a digital
+//! controller.
 //!
 //! ```text
 //! y(t) = u(t_k) for t_k ≤ t < t_{k+1},     t_k = k T,     k = 0, 1, 2, …
 //! ```
 //!
-//! u is taken just before t_k: where it refers to y itself, or to other sampled numbers, these have the values that
-//! they were held at until then. So y is the memory of a difference equation, y_{k+1} = f(y_k, …), which begins at
-//! `initial`. Steps of the integration end at the instants t_k. (Åström & Wittenmark, *Computer-Controlled Systems*,
-//! 3rd ed. (1997), ch. 2)
+//! u is taken just before t_k: where it refers to y itself, or to other sampled numbers, these have their values from
+//! before t_k. So y is the memory of a difference equation, y_{k+1} = f(y_k, …), which begins at `initial`. Steps of
+//! the integration end at the instants t_k. (Åström & Wittenmark, *Computer-Controlled Systems*, 3rd ed. (1997), ch. 2)
 
 use std::borrow::Cow;
 
@@ -27,9 +27,9 @@ pub struct Sampled {
     input: Formula,
     /// T, s.
     period: f64,
-    /// What y was before the start, of parameters.
+    /// y before the start, of parameters.
     initial: Formula,
-    /// Of y, where it is known.
+    /// Dimension of y; `None` if unknown.
     dimension: Option<Dimension>,
 }
 

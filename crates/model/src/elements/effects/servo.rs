@@ -6,7 +6,7 @@
 //! ```
 //!
 //! sat is x well within the limit L (its derivative there is 1 − 5·10⁻⁵), L beyond, and smooth between. d target/dt is
-//! `target_rate` where it is said.
+//! `target_rate` if that is given.
 
 use mbint_derive::Element;
 use symdiff::Formula;
@@ -33,11 +33,11 @@ pub struct Servo {
     /// The joint's coordinate.
     #[group]
     on: OnJoint,
-    /// What the coordinate should be; may depend on t, states, positions and velocities.
+    /// Target value of the coordinate; may depend on t, states, positions and velocities.
     #[quantity(unit = "m or rad")]
     #[key(image = Turning)]
     target: Formula,
-    /// How fast the target changes, where it depends on more than t.
+    /// How fast the target changes, if it depends on more than t.
     #[quantity(unit = "m/s or rad/s", otherwise = "the target's derivative by t")]
     #[key(image = Turning)]
     target_rate: Option<Formula>,

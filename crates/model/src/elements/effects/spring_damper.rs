@@ -11,8 +11,9 @@
 //! where d is not parallel to e the pair of forces is also a couple d × F, as in a guide. The line has no direction at
 //! ℓ = 0: the force is NaN there, unless ℓ₀ = 0. Then the elastic force is −k d, and the damper's is −c ḋ where the
 //! points meet, which is its limit on every straight way through: ḋ is d's direction there. A zero stiffness or damping
-//! leaves nothing behind. A further tension is a formula of the spring's own length ℓ (or s) and rate, and of what else
-//! a formula may depend on. With one, or where k or ℓ₀ depend on the motion, there is no potential and none is counted.
+//! adds no term. A further tension is a formula of the spring's own length ℓ (or s) and rate, and of the other
+//! quantities that a formula may depend on. With one, or where k or ℓ₀ depend on the motion, there is no potential and
+//! none is counted.
 
 use mbint_derive::Element;
 use symdiff::{Formula, Scalar};
@@ -106,11 +107,11 @@ struct Coefficients<'g> {
     free_length: Scalar<'g>,
 }
 
-/// A spring in its place.
+/// A spring with its length, rate and force.
 struct Stretched<'g> {
     /// F_A
     pull: Vector<'g>,
-    /// Of F_A under tension.
+    /// Direction of F_A under tension.
     direction: Vector<'g>,
     /// ℓ or s
     length: Scalar<'g>,

@@ -1,4 +1,4 @@
-//! A state: a number that changes as a formula says, beside the mechanism's coordinates.
+//! A state: a number that changes as a formula says, in addition to the mechanism's coordinates.
 //!
 //! ```text
 //! ẏ = f(t, q, v, y)        in the unit of y over s;      y = y₀ at the start
@@ -25,7 +25,7 @@ pub struct State {
     pub rate: Formula,
     /// y₀, of parameters.
     pub initial: Formula,
-    /// Of y, where it is known.
+    /// Dimension of y; `None` if unknown.
     pub dimension: Option<Dimension>,
 }
 

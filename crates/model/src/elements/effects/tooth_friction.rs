@@ -48,12 +48,12 @@ pub struct ToothFriction {
     /// The joint.
     #[group]
     pub on: Teeth,
-    /// Power that comes out over that which goes in, at speed; of a planetary set that of both meshes together, with
-    /// the carrier held.
+    /// Output power over input power, at speed; for a planetary set that of both meshes together, with the carrier
+    /// fixed.
     #[quantity(unit = "1", constant, requires = SHARE)]
     #[key(otherwise = "needed, but for a worm gear")]
     pub efficiency: Option<Formula>,
-    /// Of friction between the flanks of a worm gear while sliding.
+    /// Coefficient of friction between the flanks of a worm gear while sliding.
     #[quantity(unit = "1", constant, nonnegative)]
     #[key(otherwise = "needed for a worm gear, and for nothing else")]
     pub coefficient: Option<Formula>,

@@ -45,7 +45,7 @@ pub struct Torque {
     pub frame: ForceFrame,
 }
 
-/// What a torque acts on, by index.
+/// Body or joint that a torque acts on, by index.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TorqueOn {
     /// A body.

@@ -69,7 +69,7 @@ pub struct Tyre {
     /// The body that rolls, for forces along the heading. In the plane the ground is then below, along x, and there is
     /// no side force.
     pub wheel: Option<BodyRef>,
-    /// Of the wheel.
+    /// Radius of the wheel.
     #[quantity(unit = "m", constant, positive)]
     pub radius: Option<Formula>,
     /// Force along the heading by slip κ, where that is small.

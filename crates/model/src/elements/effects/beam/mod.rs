@@ -79,7 +79,7 @@ pub struct Beam {
     pub flexible: Option<Flexible>,
 }
 
-/// What makes a beam an element of a flexible body.
+/// Properties of a beam that is an element of a flexible body.
 #[derive(Clone, Debug)]
 pub struct Flexible {
     /// The name of the body.
@@ -286,5 +286,5 @@ impl Checked for Beam {
     }
 }
 
-/// What makes a beam one of space.
+/// Message for a beam in space without `torsional_stiffness`.
 const NEEDS_TORSION: &str = "in space a beam has a `torsional_stiffness`";

@@ -47,13 +47,14 @@ pub(super) struct SpatialBeam<'g> {
     pub damping: Scalar<'g>,
 }
 
-/// What an element measures.
+/// Measured quantities of an element.
 pub(super) struct MeasuredBeam<'g> {
     /// ℓ, m
     pub length: Scalar<'g>,
     /// N, N
     pub tension: Scalar<'g>,
-    /// Moments of the first and the second section, each in its own axes, N m: of what follows on what precedes.
+    /// Moments at the first and the second section, each in its own axes, N m: those by the following part on the
+    /// preceding.
     pub moments: [Vector<'g>; 2],
 }
 

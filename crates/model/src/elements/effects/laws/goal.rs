@@ -1,4 +1,4 @@
-//! What a drive's coordinate should be, and how fast that changes.
+//! Target of a drive's coordinate, and its rate.
 //!
 //! The rate of a target that depends on t alone is its derivative by t. Of one that follows states or a motion it is a
 //! formula of its own, `target_rate`: the target's derivative would need rates and accelerations.

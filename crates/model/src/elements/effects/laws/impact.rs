@@ -110,7 +110,7 @@ pub enum RestitutionLaw {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Exponent(pub f64);
 
-/// Of K: force over a power of the depth, or a plain number in SI where no unit has that power.
+/// Dimension of K: force over a power of the depth, or a plain number in SI if no unit has that power.
 fn stiffness_dimension(exponent: Option<Exponent>, units: usize) -> Dimension {
     let coordinates = [JointCoordinate::Displacement, JointCoordinate::Angle];
     let [depth, _, effort] = dimensions_of(coordinates[units]);

@@ -4,7 +4,7 @@
 //! p(x) = (⟨x + ε⟩² − ⟨x − ε⟩²)/4ε,   ⟨x⟩ = max(x, 0):   0 below −ε, x above ε, (x + ε)²/4ε between
 //! ```
 //!
-//! p has a continuous derivative, which is what Newton's iteration asks for, and is exactly zero where nothing acts.
+//! p has a continuous derivative, as Newton's iteration needs, and is exactly zero where nothing acts.
 
 use symdiff::Scalar;
 
@@ -22,7 +22,7 @@ pub fn clipped(x: Scalar) -> Scalar {
 }
 
 impl<'g> PositivePart<'g> {
-    /// Of x, with a corner ε wide to either side.
+    /// Positive part of x, with a corner ε wide to either side.
     pub fn of(x: Scalar<'g>, corner: Scalar<'g>) -> Self {
         let (above, below) = (clipped(x + corner), clipped(x - corner));
         let difference = |power: i32, divisor: f64| (above.powi(power) - below.powi(power)) / (divisor * corner);

@@ -1,7 +1,7 @@
 //! A flexible body that its first node carries along: mass, centre and moments of inertia, and how each coordinate of
 //! deformation changes them.
 //!
-//! x is a place of the undeformed body from the first node, N_k the displacement there by coordinate k, ρ the density:
+//! x is a point of the undeformed body from the first node, N_k the displacement there by coordinate k, ρ the density:
 //!
 //! ```text
 //! m = ∫ρ,   S_0 = ∫ρ x,   J_0 = ∫ρ (x·x 1 − x xᵀ)
@@ -9,8 +9,8 @@
 //! ```
 //!
 //! All but c_k are exact from the mass matrix, since it knows displacements and rotations of the whole body. c_k needs
-//! strains of the whole body, x ↦ G x with G symmetric: the nodes are displaced by G x, and what else there is (the
-//! nodes' rotations, the modes) is where it stores the least energy. That is exact where such a strain is among the
+//! strains of the whole body, x ↦ G x with G symmetric: the nodes are displaced by G x, and the other coordinates (the
+//! nodes' rotations, the modes) take the values of least stored energy. That is exact where such a strain is among the
 //! shapes, as along a bar or for lumped masses at nodes.
 
 use nalgebra::{DMatrix, DVector, Matrix3, SymmetricEigen, Vector3};
@@ -39,7 +39,7 @@ pub struct Carried {
 }
 
 impl Carried {
-    /// Of a body by its matrices.
+    /// Inertia of a body by its matrices.
     pub fn of(matrices: &Matrices) -> Self {
         let mass = &matrices.mass;
         let motions = |motion: &dyn Fn(usize) -> DVector<f64>| {
@@ -86,7 +86,7 @@ fn strained(matrices: &Matrices, strain: Matrix3<f64>) -> DVector<f64> {
     let free: Vec<usize> = (0..all.len()).filter(|&row| !is_displacement(row)).collect();
     let force = (&matrices.stiffness * &all).select_rows(&free);
     let stiffness = matrices.stiffness.select_rows(&free).select_columns(&free);
-    // Metres, radians and modes are made alike; what stores no energy stays zero.
+    // Scales metres, radians and modes alike; coordinates that store no energy stay zero.
     let scales = stiffness.diagonal().map(|own| if own > 0.0 { 1.0 / own.sqrt() } else { 0.0 });
     let scaled = DMatrix::from_fn(free.len(), free.len(), |i, j| scales[i] * stiffness[(i, j)] * scales[j]);
     let SymmetricEigen { eigenvectors, eigenvalues } = SymmetricEigen::new(scaled);

@@ -9,7 +9,7 @@
 //! ```
 //!
 //! That is the order of Craig and Bampton's reduction (*Coupling of substructures for dynamic analyses*, AIAA J. 6
-//! (1968) 1313): constraint modes, which move one coordinate of one node, then normal modes with all nodes held.
+//! (1968) 1313): constraint modes, which move one coordinate of one node, then normal modes with all nodes fixed.
 //! Lengths and rotations are small, in the axes of the body as it stands undeformed; everything is in SI units.
 
 use nalgebra::{Cholesky, DMatrix, DVector};
@@ -86,7 +86,8 @@ impl Matrices {
         OF_NODE * self.nodes.len() + mode
     }
 
-    /// |K|, and where that is next to nothing a thousandth of what a positive semidefinite matrix may have there.
+    /// Sizes of the entries of K: |K|, and a thousandth of the bound of a positive semidefinite matrix if that is
+    /// larger.
     fn sizes(&self) -> DMatrix<f64> {
         let of = |i: usize, j: usize| self.stiffness[(i, j)].abs().max(1e-3 * diagonal(&self.stiffness, i, j));
         DMatrix::from_fn(self.size(), self.size(), of)
@@ -165,7 +166,7 @@ impl Matrices {
     }
 }
 
-/// How many rows belong to what.
+/// Numbers of nodes and modes, which the rows belong to.
 struct Places {
     nodes: usize,
     modes: usize,
@@ -230,7 +231,7 @@ impl Places {
     }
 }
 
-/// √(a_ii a_jj), by which entries beside the diagonal are small.
+/// √(a_ii a_jj), the scale of off-diagonal entries.
 fn diagonal(matrix: &DMatrix<f64>, i: usize, j: usize) -> f64 {
     (matrix[(i, i)] * matrix[(j, j)]).abs().sqrt()
 }

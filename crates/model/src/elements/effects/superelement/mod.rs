@@ -14,8 +14,8 @@
 //! ```
 //!
 //! Deformation is small against the first node, its motion is not; rigid motions strain nothing. The matrices are
-//! constant, so tension and spin do not stiffen the body: what bends far, or spins fast, is divided into several, or is
-//! a `beam`.
+//! constant, so tension and spin do not stiffen the body: one that bends far, or spins fast, is divided into several,
+//! or is a `beam`.
 
 pub(super) mod carried;
 pub mod matrices;
