@@ -45,7 +45,7 @@ pub enum Form<T> {
         /// Rounding of edges and corners, m.
         radius: T,
     },
-    /// A line in x and y, or the plate inside of it where it is closed, and all points within a radius of them.
+    /// A line in x and y, or the plate inside it if it is closed, and all points within a radius of them.
     Outline {
         /// Its points, m.
         points: Vec<Bend<T>>,
@@ -86,9 +86,9 @@ pub enum Form<T> {
 /// A point of a line.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Bend<T> {
-    /// Its place.
+    /// Its position.
     pub to: [T; 3],
-    /// Radius of the arc from the point before, which turns right where it is negative; straight without.
+    /// Radius of the arc from the point before, which turns right if it is negative; `None` for a straight line.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub radius: Option<T>,
 }
@@ -98,7 +98,7 @@ pub struct Bend<T> {
 pub struct Shape {
     /// The origin of its frame, in the body's frame or in that of the point that it belongs to, m.
     pub position: [Formula; 3],
-    /// Of its frame against that one.
+    /// Rotation of its frame against that one.
     pub rotation: Option<Rotation>,
     /// In its frame.
     pub form: Form<Formula>,

@@ -44,6 +44,6 @@ pub enum Glyph {
     Force,
     /// A bent arrow at the end.
     Torque,
-    /// Nothing: an effect without a place.
+    /// Nothing: an effect without a location.
     Nothing,
 }

@@ -32,7 +32,7 @@ pub struct Trajectory {
     pub points: Vec<Waypoint>,
     /// How it moves from one point to the next.
     pub timing: Timing,
-    /// Of the value, where it is known.
+    /// Dimension of the value; `None` if unknown.
     pub dimension: Option<Dimension>,
 }
 
@@ -69,7 +69,7 @@ pub enum Timing {
 /// Time, value and rate.
 type Knot<'g> = [Scalar<'g>; 3];
 
-/// What holds up to a time.
+/// A time and the expression that holds up to it.
 type Piece<'g> = (Scalar<'g>, Scalar<'g>);
 
 impl Trajectory {
@@ -90,7 +90,7 @@ impl Trajectory {
         of_points.chain(ramp).chain(given).chain(of_excitation).chain(of_random)
     }
 
-    /// Its spectrum, where it is random.
+    /// Its spectrum, if it is random.
     pub fn random(&self) -> Option<&RandomFunction> {
         match &self.timing {
             Timing::Random(random) => Some(random),
@@ -98,7 +98,7 @@ impl Trajectory {
         }
     }
 
-    /// Its limits, where it is an excitation.
+    /// Its limits, if it is an excitation.
     pub fn excitation(&self) -> Option<&Excitation> {
         match &self.timing {
             Timing::Within(excitation) => Some(excitation),

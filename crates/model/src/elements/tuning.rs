@@ -29,7 +29,7 @@ tuning! {
         flat_face: f64 = 1e-3, moves "bounds of models with contacts of cylinders";
         /// Angle of a line to a face or the side below which it counts as parallel.
         line_along_cylinder: f64 = 1e-4, moves "bounds of models with contacts of cylinders";
-        /// Halvings of a line in the search for its place nearest to a cylinder.
+        /// Halvings of a line in the search for its point nearest to a cylinder.
         halvings_of_line: i32 = 16, moves "bounds of models with contacts of cylinders";
         /// Square of the sine or cosine of an angle that counts as none.
         no_angle: f64 = 1e-30, moves "bounds of models with contacts of cylinders";
@@ -39,7 +39,7 @@ tuning! {
         steps_to_ground: usize = 3, moves "bounds of models with contacts of ground";
         /// Most points: each face, edge and corner has instructions of its own.
         points_of_hull: usize = 32, moves "which hulls are refused";
-        /// Points that lie this share of the hull's size beside a plane lie in it.
+        /// Points within this share of the hull's size from a plane lie in it.
         points_of_plane: f64 = 1e-9, moves "which hulls are refused";
         /// Turns of less than this at a corner are none, over the outline's reach.
         smooth_corner: f64 = 1e-6, moves "bounds of models with contacts of outlines";
@@ -63,10 +63,10 @@ tuning! {
         no_load_of_joint: f64 = 1e-6, moves "bounds of models with friction";
         /// ε over L, in the equation of saturation.
         corner_of_saturation: f64 = 0.01, moves "bounds of models with saturations";
-        /// Points nearer than this coincide for a damper of no free length, m. Its square is lost in rounding beside
-        /// that of a length of 0.1 µm.
+        /// Points nearer than this coincide for a damper of no free length, m. Its square is lost in rounding when
+        /// added to that of a length of 0.1 µm.
         coincident_points: f64 = 1e-15, moves "bounds of models with dampers";
-        /// Share of the largest stiffness below which one is none.
+        /// Share of the largest stiffness below which a stiffness counts as zero.
         no_stiffness: f64 = 1e-9, moves "which superelements are refused";
         /// Most modes of a body.
         most_modes: usize = 100, moves "which superelements are refused";

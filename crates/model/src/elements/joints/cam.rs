@@ -13,7 +13,7 @@
 //!
 //! N = √(1 + (s'/|d|)²) makes ∂Φ/∂r_B the unit normal of the pitch curve, (d + s' z × d/|d|)/(N |d|), so λ is the
 //! contact force, N: −Φ_qᵀ λ pushes the roller's centre with −λ along that normal; its pressure angle is atan(s'/|d|).
-//! The flat face is pushed with −λ n at the contact, s' beside the foot of the perpendicular from A: at B that has the
+//! The flat face is pushed with −λ n at the contact, s' from the foot of the perpendicular from A: at B that has the
 //! torque −λ (z × n · d + s'). λ < 0 is contact; the follower is guided on both sides, so that λ > 0 says where a
 //! single profile would lose it. It fails at d = 0, and where b + s + s″ ≤ 0 a flat face cannot touch the profile.
 //!
@@ -59,7 +59,7 @@ pub struct Cam {
     normal: Direction,
 }
 
-/// What touches a cam.
+/// Follower of a cam.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Choice)]
 pub enum Follower {
     /// A roller about the second point, or a knife edge there.

@@ -1,4 +1,4 @@
-//! What the stages ask of a joint, whatever its kind.
+//! Capabilities of joints that the stages ask for, whatever the joint's kind.
 
 use std::fmt::Debug;
 
@@ -13,7 +13,7 @@ use crate::multibody::BuildError;
 use super::rows::{Kinematics, Rows};
 use super::teeth::ToothForce;
 
-/// Properties of a kind of joint, beside its keys.
+/// Properties of a kind of joint, in addition to its keys.
 pub trait JointElement: Element + Joint {
     /// Whether it leaves the plane, whatever its axes.
     const SPATIAL: bool = false;
@@ -21,7 +21,7 @@ pub trait JointElement: Element + Joint {
     const COUPLES: bool = false;
     /// Whether effects and drives on it act on its angle unless they say `coordinate`.
     const TURNS: bool = false;
-    /// What its constraints and their multipliers mean.
+    /// Documentation of its constraints and their multipliers.
     const ROWS: &'static [RowDocs];
 }
 
@@ -30,7 +30,7 @@ pub trait JointElement: Element + Joint {
 pub struct RowDocs {
     /// Their names, as in `pin.x`; empty where the joint has one alone.
     pub name: &'static str,
-    /// Of the residual.
+    /// Unit of the residual.
     pub unit: &'static str,
     /// Unit, sign and frame of the multiplier λ.
     pub multiplier: &'static str,
@@ -43,12 +43,12 @@ pub trait Joint: Debug {
         None
     }
 
-    /// The relative motion, where the joint can give a body its place in joint coordinates.
+    /// The relative motion, if the joint can place a body in joint coordinates.
     fn mobilizer(&self) -> Option<Mobilizer<'_>> {
         None
     }
 
-    /// What a first guess can use to place a body on it; `None` where it does not place bodies.
+    /// Data by which a first guess places a body on the joint; `None` if the joint does not place bodies.
     fn placement(&self) -> Option<Placement<'_>> {
         None
     }
@@ -70,7 +70,8 @@ pub trait Joint: Debug {
         self.mobilizer()?.axis_of(coordinate)
     }
 
-    /// The direction in the first frame along which `axial` counts its reaction; `None` where it has none of its own.
+    /// Direction in the first frame along which `axial` counts the joint's reaction; `None` if it has no direction of
+    /// its own.
     fn reaction_axis(&self) -> Option<&[Formula; 3]> {
         self.axis_of(JointCoordinate::Angle).or_else(|| self.axis_of(JointCoordinate::Displacement))
     }
@@ -99,7 +100,7 @@ pub trait Joint: Debug {
         Toothed::default()
     }
 
-    /// Which friction its teeth have; nothing where it has none.
+    /// Kind of friction of its teeth; `None` if they have none.
     fn mesh_kind(&self) -> Option<MeshKind> {
         None
     }
@@ -134,7 +135,7 @@ pub trait Joint: Debug {
         false
     }
 
-    /// The speed of a coordinate, where it is said: it constrains velocities if it follows the motion.
+    /// The speed of a coordinate, if it is given: it constrains velocities if it follows the motion.
     fn speed(&self) -> Option<&Formula> {
         None
     }
@@ -236,8 +237,8 @@ pub enum Mobilizer<'a> {
 }
 
 impl<'a> Mobilizer<'a> {
-    /// The one axis about which it turns or along which it slides, of a planar motion the normal; `None` where there is
-    /// none, or two.
+    /// The one axis about which it turns or along which it slides, or the normal of a planar motion; `None` if there is
+    /// no axis, or two.
     pub fn axis(&self) -> Option<&'a [Formula; 3]> {
         match *self {
             Self::Weld { .. } | Self::TwoRotations { .. } | Self::FreeRotation => None,
@@ -269,7 +270,7 @@ impl<'a> Mobilizer<'a> {
         self.axis_of(coordinate).is_some() && !follows
     }
 
-    /// The angle at rest; `None` where it is zero.
+    /// The angle at rest; `None` for zero.
     pub fn twist(&self) -> Option<&'a Formula> {
         match *self {
             Self::Weld { twist } | Self::Translation { twist, .. } => Some(twist),
@@ -308,9 +309,9 @@ impl<'a> Mobilizer<'a> {
 /// Where a joint puts one of its bodies when the other is placed.
 #[derive(Clone, Copy, Debug)]
 pub struct Placement<'a> {
-    /// Of the points.
+    /// Separation of the points.
     pub separation: Separation<'a>,
-    /// Of the frames.
+    /// Orientation of the frames.
     pub orientation: Orientation<'a>,
 }
 

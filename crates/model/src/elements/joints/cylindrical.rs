@@ -6,7 +6,7 @@
 //! ```
 //!
 //! The nᵢ are the axis' unit normals; it goes through A. −Φ_qᵀ λ of the first rows is the force −λ nᵢ at B on the
-//! second body and the opposite on the first, at the same place; the others carry the torque across the axis.
+//! second body and the opposite on the first, at the same point; the others carry the torque across the axis.
 
 use mbint_derive::Element;
 use symdiff::Formula;

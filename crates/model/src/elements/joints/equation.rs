@@ -115,7 +115,7 @@ impl Element for Equation {
     }
 }
 
-/// The place of the `=` between the sides, which is none of a comparison.
+/// Index of the `=` between the sides; an `=` of a comparison does not count.
 fn equals_sign(text: &str) -> Option<usize> {
     let compares = |index: usize| text[..index].ends_with(['<', '>', '!', '=']) || text[index + 1..].starts_with('=');
     text.match_indices('=').map(|(index, _)| index).find(|&index| !compares(index))

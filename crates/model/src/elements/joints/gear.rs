@@ -53,7 +53,7 @@ pub struct Gear {
 }
 
 impl Gear {
-    /// Of which no teeth are known.
+    /// A gear whose teeth are unknown.
     pub fn of(between: [Rotating; 2], ratio: f64, offset: f64) -> Self {
         let (ratio, offset) = (Formula::number(ratio), Formula::number(offset));
         Self { between, ratio, offset, flanks: ToothContact::unknown(), cone_distance: None }

@@ -1,4 +1,4 @@
-//! Joints, one file each: keys, constraints, and what follows from these for the other stages.
+//! Joints, one file each: keys, constraints, and the data that follow from these for the other stages.
 //!
 //! A joint is between two points A and B with frames. Axes are directions in both frames alike (any length but zero):
 //! where the joint's angle is zero, the frames' axes are parallel.

@@ -7,7 +7,7 @@
 //! speed        s(t) = from + ∫ v(t) dt                                     where `Graph::integral` knows it
 //!              Ψ = ṡ − v(t, q, y) = 0      1 row, rad/s or m/s
 //!              where it follows positions q or states y, from where `initial` says
-//! move         s(t) = from + (to − from) σ(u)                              u = (t − start)/duration, kept within 0 … 1
+//! move         s(t) = from + (to − from) σ(u)                              u = (t − start)/duration, clipped to 0 … 1
 //! run-up       s(t) = from + v [duration Σ(u) + ⟨t − start − duration⟩]    Σ = ∫σ, so that ṡ = v σ(u)
 //!
 //! cycloidal    σ = u − sin(2π u)/2π                       Σ = u²/2 + (cos(2π u) − 1)/4π²
@@ -79,7 +79,7 @@ pub struct Motor {
     ramp: Formula,
 }
 
-/// Of `ramp`.
+/// Requirement on `ramp`.
 const RAMP: Requirement =
     Requirement { holds: |value| value > 0.0 && value <= 0.5, message: "must be above 0 and at most 0.5" };
 
@@ -141,7 +141,7 @@ impl Motor {
         self.speed.as_ref().filter(|speed| !k.is_prescribed(speed))
     }
 
-    /// What pushes on the coordinate so that a value is zero.
+    /// Row of the constraint that `value`, of the coordinate, is zero.
     fn row<'g>(&self, k: &dyn Kinematics<'g>, value: Scalar<'g>) -> Result<Row<'g>, BuildError> {
         let axis = k.axis(self.on)?;
         let (push, none) = (-axis, Vector::zero(k.graph()));

@@ -6,7 +6,7 @@
 //! ```
 //!
 //! The nᵢ are the slot's unit normals; the slot goes through A and does not end. −Φ_qᵀ λ of the first rows is the force
-//! −λ nᵢ at B on the second body (the pin) and the opposite on the first (the slot), at the same place. In the plane
+//! −λ nᵢ at B on the second body (the pin) and the opposite on the first (the slot), at the same point. In the plane
 //! the first row of the prismatic joint.
 
 use mbint_derive::Element;

@@ -6,7 +6,7 @@
 //! ```
 //!
 //! n₁ is the plane's unit normal, through A, and the nᵢ are normal to it. −Φ_qᵀ λ of the first row is the force −λ n₁
-//! at B on the second body and the opposite on the first, at the same place; the others carry the torque across the
+//! at B on the second body and the opposite on the first, at the same point; the others carry the torque across the
 //! normal. Its angle is that of the second frame against the first about the normal.
 
 use mbint_derive::Element;

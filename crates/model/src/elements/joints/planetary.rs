@@ -4,7 +4,7 @@
 //! Φ = φ_s − φ_c + ρ (φ_r − φ_c) − offset = 0,   ρ = z_r/z_s          1 row, rad
 //! ```
 //!
-//! Angles are those of joints about parallel axes, against the one body on which all are held; a member without a name
+//! Angles are those of joints about parallel axes, against the one body that carries them all; a member without a name
 //! stands still. Against the carrier the sun turns the ring backwards (Willis). −Φ_qᵀ λ is the torque −λ on the sun,
 //! −ρ λ on the ring and (1 + ρ) λ on the carrier: together they are zero, and planets at even distances push no
 //! bearing aside. The planets have no inertia of their own here: that of their masses about the common axis belongs to
@@ -156,7 +156,7 @@ impl Joint for Planetary {
         let [sun, ring, carrier] = self.members();
         let (sun_angle, carrier_angle) = (angle(0, sun), angle(2, carrier));
         let value = sun_angle - carrier_angle + ratio * (angle(1, ring) - carrier_angle) - offset;
-        // The reaction is what the sun feels, or the ring where the sun stands still.
+        // The reaction is the torque on the sun, or on the ring if the sun stands still.
         let torque = match (sun, ring) {
             (Some(sun), _) => -senses[0] * k.axis(sun)?,
             (None, Some(ring)) => -senses[1] * ratio * k.axis(ring)?,

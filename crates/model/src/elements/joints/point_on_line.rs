@@ -5,7 +5,7 @@
 //! ```
 //!
 //! The nᵢ are the line's unit normals; it goes through A and does not end. −Φ_qᵀ λ is the force −λ nᵢ at B on the
-//! second body and the opposite on the first, at the same place.
+//! second body and the opposite on the first, at the same point.
 
 use mbint_derive::Element;
 use symdiff::Formula;

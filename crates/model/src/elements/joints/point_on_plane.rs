@@ -5,7 +5,7 @@
 //! ```
 //!
 //! n₁ is the plane's unit normal; the plane goes through A. −Φ_qᵀ λ is the force −λ n₁ at B on the second body and the
-//! opposite on the first, at the same place.
+//! opposite on the first, at the same point.
 
 use mbint_derive::Element;
 use symdiff::Formula;

@@ -9,7 +9,7 @@
 //!
 //! The nᵢ are the line's unit normals, fixed in the first body, in the plane n₁ = R₁ (axis/|axis|)⊥; the line goes
 //! through A; the second frame is turned by `angle` about the first's z. −Φ_qᵀ λ of the first rows is the force −λ nᵢ
-//! at B on the second body and the opposite on the first, at the same place, for B slides: its arm on the first body is
+//! at B on the second body and the opposite on the first, at the same point, for B slides: its arm on the first body is
 //! r_B − r₁. That of the others is a torque −λ on the second body and +λ on the first. An axis of length zero has no
 //! normal: the rows are not numbers then.
 

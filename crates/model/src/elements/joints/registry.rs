@@ -11,7 +11,7 @@ pub struct JointDocs {
     /// Keyword, keys, equations, source, example.
     #[serde(flatten)]
     pub element: ElementDocs,
-    /// What its constraints and their multipliers mean.
+    /// Documentation of its constraints and their multipliers.
     pub rows: &'static [RowDocs],
 }
 
@@ -83,8 +83,7 @@ macro_rules! joints {
                 }
             }
 
-            /// What the keys of a kind are to an instance that is mirrored or turned; `None` where there is no such
-            /// kind.
+            /// Images of the keys of a kind in an instance that is mirrored or turned; `None` if there is no such kind.
             pub fn images(keyword: &str) -> Option<Vec<$crate::grammar::KeyImage>> {
                 match keyword {
                     $(<$name as $crate::grammar::Element>::KEYWORD => Some(<$name as $crate::grammar::Group>::images()),)*
@@ -103,7 +102,7 @@ macro_rules! joints {
                 }
             }
 
-            /// Of every joint, in the order of the registry.
+            /// Documentation of every joint, in the order of the registry.
             pub fn docs() -> Vec<JointDocs> {
                 vec![$(JointDocs {
                     element: $crate::grammar::ElementDocs::of::<$name>(),

@@ -1,4 +1,4 @@
-//! What a joint's constraints are written in, and the constraints that several joints share.
+//! Quantities in which a joint's constraints are written, and the constraints that several joints share.
 //!
 //! A virtual rotation δπ of the second body, in the axes of the first frame F₁, changes the vector part e of the
 //! relative rotation q = (q₀, e) by ½ (q₀ δπ + δπ × e), so a row
@@ -19,8 +19,8 @@ use crate::multibody::{BuildError, Pair, Vector};
 /// One scalar constraint.
 ///
 /// The equations of motion are M w = Q − Φ_qᵀ λ, so a row's generalised force is −Φ_qᵀ λ, or −Ψ_vᵀ λ of a velocity
-/// constraint. `force` and `torque` are those that is on the joint's second body, for λ = 1; the first body has the
-/// opposite, at the same place (but for gears and racks).
+/// constraint. `force` and `torque` act on the joint's second body, for λ = 1; the first body has the opposite, at the
+/// same point (but for gears and racks).
 #[derive(Clone, Copy, Debug)]
 pub struct Row<'g> {
     /// Distinguishes it from the joint's other rows; empty where there are none.
@@ -77,7 +77,7 @@ pub trait Kinematics<'g> {
     /// The bodies that a joint is between, by index.
     fn bodies(&self, joint: usize) -> Option<[usize; 2]>;
     /// The line about or along which a joint's coordinate is counted: a point of it and the unit vector along it, in
-    /// the frame of one of the joint's bodies; `None` where there is none.
+    /// the frame of one of the joint's bodies; `None` if there is no such line.
     fn line(&self, on: OnJoint, body: usize) -> Result<Option<[Vector<'g>; 2]>, BuildError>;
     /// The position of a point of a body's frame, m.
     fn place(&self, body: usize, local: Vector<'g>) -> Vector<'g>;
@@ -128,7 +128,7 @@ impl<'g, 'k> Frames<'g, 'k> {
     }
 
     /// No displacement along n, a unit vector of the first frame: Φ = n₁ · (r_B − r_A), m. −Φ_qᵀ λ is the force −λ n₁
-    /// at B on the second body and the opposite on the first, at the same place.
+    /// at B on the second body and the opposite on the first, at the same point.
     pub fn normal_row(&self, name: &'static str, normal: Vector<'g>) -> Row<'g> {
         let normal = self.outward(normal);
         let offset = self.offset();

@@ -21,8 +21,8 @@
 //! ```
 //!
 //! Angles ψ are those against the body that both bearings have in common; all of this is fixed in its frame. The
-//! constraint equates angles, so its multiplier acts as torques about the axes: `instead` is what the force at P stands
-//! for. The difference does no work, and is carried by the bearings. (Norton, *Machine Design* (2014), ch. 12 and 13.)
+//! constraint equates angles, so its multiplier acts as torques about the axes: the force at P stands for `instead`.
+//! The difference does no work, and is carried by the bearings. (Norton, *Machine Design* (2014), ch. 12 and 13.)
 
 use mbint_derive::Element;
 use schemars::Schema;
@@ -46,12 +46,12 @@ pub(super) const PRESSURE: Requirement = Requirement {
 #[derive(Clone, Debug, Element)]
 #[element(checked)]
 pub struct ToothContact {
-    /// Of the teeth across their direction, e.g. `20 deg`: then bearings feel the teeth.
+    /// Pressure angle of the teeth across their direction, e.g. `20 deg`; with it, bearings feel the teeth.
     #[quantity(unit = "rad", constant, requires = PRESSURE)]
     #[key(otherwise = "the torque alone is known, and bearings that the teeth push on have no known reactions")]
     pub pressure_angle: Option<Formula>,
-    /// Of the first gear's teeth against its axis, or of a bevel gear's against the cone; positive for a right-handed
-    /// gear.
+    /// Helix angle: of the first gear's teeth against its axis, or of a bevel gear's against the cone; positive for a
+    /// right-handed gear.
     #[quantity(unit = "rad", default = 0, constant, requires = BELOW_RIGHT)]
     #[key(image = Turning)]
     pub helix_angle: Formula,
@@ -101,7 +101,7 @@ pub struct ToothForce<'g> {
     pub force: Vector<'g>,
     /// Its magnitude, N.
     pub magnitude: Scalar<'g>,
-    /// What the constraint does to the joints' coordinates, N m or N: the force stands for this.
+    /// The constraint's torques or forces on the joints' coordinates, N m or N, which the force stands for.
     pub instead: [(OnJoint, Scalar<'g>); 2],
 }
 
@@ -110,8 +110,7 @@ pub struct ToothForce<'g> {
 pub(super) struct ToothedBody<'g> {
     /// By index.
     pub body: usize,
-    /// Whether the joint's coordinate is that of the toothed body against the common one, or −1 where it is the
-    /// opposite.
+    /// 1 if the joint's coordinate is that of the toothed body against the common one, −1 if it is the opposite.
     pub sign: f64,
     /// A point of the axis.
     pub center: Vector<'g>,
@@ -120,7 +119,7 @@ pub(super) struct ToothedBody<'g> {
 }
 
 impl<'g> ToothedBody<'g> {
-    /// From a place to the axis.
+    /// Vector from a point to the axis, normal to it.
     fn inward(self, from: Vector<'g>) -> Vector<'g> {
         let arm = self.center - from;
         arm - arm.dot(self.axis) * self.axis
@@ -151,7 +150,7 @@ pub(super) struct Mesh<'g, 'k> {
 }
 
 impl<'g, 'k> Mesh<'g, 'k> {
-    /// Of the coupling `own` between two joints.
+    /// Mesh of the coupling `own` between two joints.
     pub fn of(k: &'k dyn Kinematics<'g>, own: usize, on: [OnJoint; 2]) -> Result<Self, BuildError> {
         let names = on.map(|on| k.joint_name(on.joint));
         let refuse = |why: String| BuildError::Teeth { joint: k.joint_name(own).to_owned(), why };
@@ -170,7 +169,7 @@ impl<'g, 'k> Mesh<'g, 'k> {
         Ok(Self { k, own, on, common, toothed: [toothed(on[0], first)?, toothed(on[1], second)?] })
     }
 
-    /// Of two gears whose second angle is `ratio` times the first, under the torque −λ on the second.
+    /// Force between two gears whose second angle is `ratio` times the first, under the torque −λ on the second.
     pub fn of_gears(
         &self,
         ratio: Scalar<'g>,
@@ -246,7 +245,7 @@ impl<'g, 'k> Mesh<'g, 'k> {
         Ok((apex + distance * line, line))
     }
 
-    /// Of a rack that moves by `radius` a radian of the pinion, under the force −λ on it.
+    /// Force between a pinion and a rack that moves by `radius` a radian of the pinion, under the force −λ on the rack.
     pub fn of_rack(
         &self,
         radius: Scalar<'g>,

@@ -49,11 +49,11 @@ pub struct Worm {
     /// Turns of the wheel for one of the worm: the worm's starts over the wheel's teeth.
     #[quantity(unit = "1", positive, constant)]
     ratio: Formula,
-    /// Of the thread against the plane across the worm's axis; positive for a right-handed worm.
+    /// Lead angle of the thread against the plane across the worm's axis; positive for a right-handed worm.
     #[quantity(unit = "rad", constant, requires = LEAD)]
     #[key(image = Turning)]
     lead_angle: Formula,
-    /// Of the flanks across the thread.
+    /// Pressure angle of the flanks across the thread.
     #[quantity(unit = "rad", constant, requires = PRESSURE)]
     #[key(otherwise = "20 deg")]
     pressure_angle: Option<Formula>,

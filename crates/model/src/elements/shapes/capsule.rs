@@ -19,7 +19,7 @@ use crate::grammar::{Checked, Fields, Reader, SymbolTable};
     checked
 )]
 pub struct Capsule {
-    /// Of the line in its middle, in its frame.
+    /// Ends of the line in its middle, in its frame.
     #[quantity(unit = "m", constant)]
     ends: Points,
     /// R

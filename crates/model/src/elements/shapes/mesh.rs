@@ -19,7 +19,7 @@ use crate::grammar::{Factors, FromNumber, Mesh};
 pub struct MeshShape {
     /// STL (text or binary) or OBJ, in the model's folder or below.
     file: Mesh,
-    /// Of the file's numbers, for all axes or each: 0.001 where the file is in mm.
+    /// Scale of the file's numbers, for all axes or each: 0.001 if the file is in mm.
     #[quantity(unit = "1", constant, nonzero)]
     #[key(default = Factors::from_number(1.0))]
     scale: Factors,

@@ -29,11 +29,11 @@ pub trait ShapeElement: Element {
 /// The frame of a shape.
 #[derive(Clone, Debug, Element)]
 pub struct ShapeFrame {
-    /// Of its frame in the body's frame; z may be there in the plane, too.
+    /// Position of its frame in the body's frame; z may be given in the plane, too.
     #[quantity(unit = "m", constant)]
     #[key(default = SpacePoint::from_number(0.0))]
     pub position: SpacePoint,
-    /// Of its frame against the body's.
+    /// Rotation of its frame against the body's.
     #[key(otherwise = "none")]
     pub rotation: Option<Rotation>,
 }

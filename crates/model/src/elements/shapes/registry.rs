@@ -31,7 +31,7 @@ macro_rules! shapes {
                 }
             }
 
-            /// What the keys of a kind are to an instance that is mirrored; `None` where there is no such kind.
+            /// Images of the keys of a kind in an instance that is mirrored; `None` if there is no such kind.
             pub fn images(keyword: &str) -> Option<Vec<$crate::grammar::KeyImage>> {
                 match keyword {
                     $(<$name as $crate::grammar::Element>::KEYWORD => Some(<$name as $crate::grammar::Group>::images()),)*
