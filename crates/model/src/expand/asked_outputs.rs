@@ -1,9 +1,9 @@
-//! Outputs that stand in place of a model's own: formulas by names, from outside its file.
+//! Outputs that replace a model's own: formulas by names, from outside its file.
 
 use crate::syntax::diagnostic::Diagnostics;
 use crate::syntax::yaml::{Entry, Node, Scalar, Value};
 
-/// The model's tree with these outputs in place of its `outputs`; messages call their text `outputs`.
+/// The model's tree with these outputs instead of its `outputs`; messages call their text `outputs`.
 pub fn write_out(mut root: Node, outputs: &[(String, String)], diagnostics: &mut Diagnostics) -> Node {
     let Value::Mapping(sections) = &mut root.value else { return root };
     let lines: Vec<String> = outputs.iter().map(|(name, formula)| format!("{name}: {formula}\n")).collect();

@@ -36,7 +36,7 @@ pub struct ChainLink {
     pub is_forward: bool,
 }
 
-/// What a dimension has beside its faces.
+/// Role of a dimension, by its entry other than the faces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Role {
     /// A value: it is a parameter.

@@ -43,16 +43,17 @@ pub fn named<'n>(variables: Option<&'n Node>, name: &'n str) -> &'n str {
 
 /// How numbers of a variable become those of SI: `SI = factor · number + offset`.
 pub struct Conversion {
-    /// What one of its unit is in SI.
+    /// SI value of one of the variable's unit, without the offset.
     pub factor: f64,
-    /// What nothing of its unit is in SI.
+    /// SI value of the number 0.
     pub offset: f64,
-    /// The unit in which people see it; `None` where the variable has none.
+    /// The unit in which people see it; `None` if the variable has none.
     pub shown: Option<DisplayUnit>,
 }
 
 impl Conversion {
-    /// Of a variable. Units of currents, temperatures, amounts and light, which models do not have, are numbers.
+    /// Conversion of a variable. Units of currents, temperatures, amounts and light, which models do not have, are
+    /// numbers.
     pub fn of(unit: &Unit, variable: &Variable) -> Self {
         let number = |shown: Option<DisplayUnit>| Self { factor: 1.0, offset: 0.0, shown };
         let Some(name) = &variable.unit else { return number(None) };

@@ -9,10 +9,10 @@ pub struct Instance {
     pub kind: InstanceKind,
 }
 
-/// What an instance is.
+/// Kind of an instance.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum InstanceKind {
-    /// Of the assembly of this name.
+    /// An instance of the assembly of this name.
     Assembly(String),
     /// An assembly, whose parameters that all its instances share are called after it.
     Definition,

@@ -47,7 +47,7 @@ pub fn dimension(node: &Node) -> Option<Dimension> {
     Unit::parse(unit).ok().map(|unit| unit.dimension)
 }
 
-/// Whether a number that is given instead of a parameter's own has such a unit; reported where it has another.
+/// Whether the unit of a number given instead of a parameter's own fits that one's; reports one that does not.
 pub fn fits(report: &mut Report, given: &Node, own: &Node) -> bool {
     match (dimension(given), dimension(own)) {
         (Some(given_as), Some(wanted)) => report.check_fits(&given.span, given_as, wanted),

@@ -13,7 +13,7 @@ use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};
 use crate::syntax::yaml::{Entry, Node, Scalar, Value};
 
-/// What its file is called in messages, and how its numbers are named.
+/// Format of a robot's file: its name in messages, and the names of its numbers.
 pub struct Format {
     pub name: &'static str,
     /// Examples of names.

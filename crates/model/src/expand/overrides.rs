@@ -14,7 +14,7 @@ pub struct Override {
     pub name: String,
     /// The whole text, for messages.
     pub text: String,
-    /// What stands behind the `=`.
+    /// Value after the `=`.
     pub(crate) value: Node,
 }
 

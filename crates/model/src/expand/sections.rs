@@ -3,7 +3,7 @@
 use crate::syntax::source::Span;
 use crate::syntax::yaml::{Entry, Node, Value};
 
-/// The entries of a section, which is made if it is not there; `None` where it is no mapping.
+/// The entries of a section, which is created if it is absent; `None` if it is no mapping.
 pub fn entries_of<'s>(sections: &'s mut Vec<Entry>, key: &str, at: &Span) -> Option<&'s mut Vec<Entry>> {
     let found = sections.iter().position(|entry| entry.key == key && !entry.value.is_null());
     let index = found.unwrap_or_else(|| {

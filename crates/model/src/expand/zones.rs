@@ -42,7 +42,7 @@ impl Zone {
     }
 }
 
-/// What parameters in [-1, 1] are mapped onto.
+/// Shapes that parameters in [-1, 1] are mapped onto.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ZoneShape {
     /// Discs, each by two of the parameters: a radius from 0 on, and an angle in half turns.
@@ -280,7 +280,7 @@ impl Writer<'_> {
 }
 
 /// The disc of radius 1, by a radius and a turn. It begins where neither coordinate is 0, nor their sum or difference:
-/// a coordinate that is 0 at the first nodes of a grid is not looked at again.
+/// a coordinate that is 0 at the first nodes of a grid is not examined again.
 fn disc(u: &str, v: &str) -> [String; 2] {
     [format!("(1 + {u})/2*cos(pi*{v} + 1)"), format!("(1 + {u})/2*sin(pi*{v} + 1)")]
 }

@@ -20,7 +20,7 @@ pub struct PlacedRobot<'r> {
     pub robot: &'r Robot,
     /// Numbers that are parameters.
     pub named: &'r HashSet<String>,
-    /// Of each body, the one that it is part of, and where it is in it.
+    /// Per body, the body that it is part of, and its pose in that one.
     pub holders: Vec<(usize, Pose)>,
 }
 
@@ -139,7 +139,7 @@ fn add(points: &mut Vec<(String, Node)>, name: &str, node: Node) -> String {
     name
 }
 
-/// Points of the ground, beside those that the model has.
+/// Adds points of the ground to those that the model has.
 fn ground(sections: &mut Sections, span: &Span, points: Vec<(String, Node)>) {
     let Some(bodies) = sections.of("bodies", span) else { return };
     let mut own = Sections(match bodies.iter().position(|entry| entry.key == "ground") {
@@ -178,7 +178,7 @@ fn rigid(source: &PlacedRobot, index: usize, points: Vec<(String, Node)>) -> Nod
     )
 }
 
-/// The mass of a body, where it is part of another.
+/// The mass of a body that is part of `holder`; `None` for any other.
 fn part_of(source: &PlacedRobot, index: usize, holder: usize) -> Option<MassPart> {
     let (held_by, pose) = &source.holders[index];
     let mass = source.robot.bodies[index].mass.as_ref().filter(|_| *held_by == holder)?;

@@ -9,7 +9,7 @@ use crate::syntax::yaml::Entry;
 
 /// The part of a force that acts on one joint.
 pub struct Share {
-    /// Of its effect.
+    /// Name of its effect.
     name: String,
     joint: usize,
     force: String,

@@ -1,4 +1,4 @@
-//! What acts in a robot: gravity, damping, friction, springs, rotors, limits, tendons, actuators; and equalities.
+//! Effects of a robot: gravity, damping, friction, springs, rotors, limits, tendons, actuators; and equalities.
 //!
 //! Damping is −d v, friction −f v/√(v² + v₀²) as that of a URDF, a spring −k (s − s₀), a rotor −a dv/dt.
 
@@ -64,7 +64,7 @@ fn friction(joint: &Joint, key: &str, number: &Value) -> Node {
     keys(span, [("joint_friction", keys(span, entries))])
 }
 
-/// What acts in a joint of one coordinate.
+/// Adds the effects in a joint of one coordinate.
 fn single(sections: &mut Sections, source: &PlacedRobot, joint: &Joint) {
     let (span, name) = (&joint.span, &joint.name);
     if source.acts(&joint.damping) {
@@ -106,7 +106,7 @@ fn single(sections: &mut Sections, source: &PlacedRobot, joint: &Joint) {
     }
 }
 
-/// What acts in a ball or on a free body.
+/// Adds the damping of a ball joint or a free body, and reports other effects there.
 fn several(sections: &mut Sections, source: &PlacedRobot, joint: &Joint, diagnostics: &mut Diagnostics) {
     let span = &joint.span;
     for (number, what) in
@@ -189,7 +189,7 @@ fn act(sections: &mut Sections, source: &PlacedRobot, tendon: &Tendon) {
     shares.iter().for_each(|share| drives::push(sections, source, share));
 }
 
-/// A constraint of what stands in `<equality>`.
+/// Adds the constraint of an entry of `<equality>`.
 fn couple(sections: &mut Sections, source: &PlacedRobot, equality: &Equality) {
     let (span, name) = (&equality.span, &equality.name);
     let node = match &equality.what {

@@ -1,7 +1,7 @@
 //! `mjcf:`, a robot's file as the beginning of a model; or alone, as a model of a second.
 //!
-//! The robot of the file ([`crate::robots::mjcf`]) → parameters (`numbers`) → entries of the model's tree with the
-//! places of the MJCF (`build`, `start`, `effects`). All that comes after reads the tree as if it were written out
+//! The robot of the file ([`crate::robots::mjcf`]) → parameters (`numbers`) → entries of the model's tree with their
+//! locations in the MJCF (`build`, `start`, `effects`). All later stages read the tree as if it were written out
 //! (decision 0086).
 
 mod build;
@@ -67,7 +67,7 @@ pub fn write_out(report: &mut Report, root: &Node, model: &Path, overrides: &[(O
     let folder = path.parent().unwrap_or(Path::new(""));
     let mut values = Values::new(&document, &report.files, folder, report.diagnostics);
     let robot = read::robot(&document, &mut values)?;
-    // What could not be read may be what moves.
+    // The parts that could not be read may be those that move.
     let is_whole = report.diagnostics.errors() == errors;
     if is_whole && robot.joints.is_empty() && !sections.iter().any(|entry| entry.key == "bodies") {
         let place = if is_mjcf(model) { document.span.clone() } else { entry.value.span.clone() };

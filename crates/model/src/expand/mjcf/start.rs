@@ -8,7 +8,7 @@ use crate::robots::algebra::{Pose, Value};
 use crate::robots::mjcf::robot::{Coupling, MjcfType};
 use crate::syntax::yaml::Value as Tree;
 
-/// Start values, or where to look for them: joints that equalities hold are found.
+/// Adds start values, or guesses, from which assembly finds them; it also finds joints that equalities constrain.
 pub fn start(sections: &mut Sections, source: &PlacedRobot) {
     let robot = source.robot;
     let said = said(sections);
@@ -51,7 +51,7 @@ pub fn start(sections: &mut Sections, source: &PlacedRobot) {
     }
 }
 
-/// Where assembly begins to look for every body.
+/// Adds guesses: the positions from which assembly starts its search, for every body.
 fn guesses(sections: &mut Sections, source: &PlacedRobot, poses: &[Pose]) {
     for (index, body) in source.robot.bodies.iter().enumerate().skip(1) {
         if source.holders[index].0 != index {
@@ -87,7 +87,7 @@ fn said(sections: &Sections) -> HashSet<String> {
     said
 }
 
-/// Positions of joints and places of free bodies, where the model observes nothing.
+/// Adds outputs if the model has none: positions of joints and of free bodies, and angles of balls.
 pub fn outputs(sections: &mut Sections, source: &PlacedRobot) {
     if sections.0.iter().any(|entry| entry.key == "outputs" && !entry.value.is_null()) {
         return;

@@ -1,4 +1,4 @@
-//! Nodes of a model's tree that are not written in it, each with the place in the robot's file that it comes from.
+//! Nodes of a model's tree that are not written in it, each with its location in the robot's file.
 
 use crate::robots::algebra::Value;
 use crate::syntax::source::Span;
@@ -46,7 +46,7 @@ pub fn lengths<const N: usize>(span: &Span, numbers: &[Value; N]) -> Node {
 pub struct Sections(pub Vec<Entry>);
 
 impl Sections {
-    /// The entries of a section, which is made where it is not there; none where what stands there is no mapping.
+    /// The entries of a section, which is created if it is absent; `None` if the section is no mapping.
     pub fn of(&mut self, section: &str, span: &Span) -> Option<&mut Vec<Entry>> {
         let known = self.0.iter().position(|entry| entry.key == section && !entry.value.is_null());
         let index = known.unwrap_or_else(|| {
@@ -69,8 +69,8 @@ impl Sections {
         }
     }
 
-    /// Adds a body. An entry of the model with nothing but `points` gives them to it, before its own of their
-    /// names; any other is a body of its own in its place.
+    /// Adds a body. An entry of the model with nothing but `points` adds these to the body, where they replace its
+    /// points of the same names; any other entry of the model replaces the body.
     pub fn add_body(&mut self, name: &str, mut node: Node) {
         let Some(entries) = self.of("bodies", &node.span.clone()) else { return };
         let Some(own) = entries.iter_mut().find(|entry| entry.key == name) else {

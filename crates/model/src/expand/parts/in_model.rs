@@ -75,8 +75,8 @@ impl Writer<'_, '_> {
         self.put("bodies", &places.bodies, bodies);
     }
 
-    /// Notes what acts on level ground in an instance of which the ground is not level. With a wheel in the plane that
-    /// is across y.
+    /// Notes an effect on level ground in an instance whose ground is not level. The ground of an effect with a wheel
+    /// in the plane is across y.
     fn check_level(&mut self, effect: &Entry, frame: InstanceFrame) {
         let Value::Mapping(kinds) = &effect.value.value else { return };
         let on_level_ground = |kind: &&Entry| EffectKind::scope_of(&kind.key) == Some(effects::Scope::LevelGround);
@@ -89,7 +89,7 @@ impl Writer<'_, '_> {
         self.parts.inclined.push(Inclined { at: kind.key_span.clone(), name, is_level: [in_plane, in_space] });
     }
 
-    /// Whether an effect or a drive is on joints that turn; nothing where it is on nothing.
+    /// Whether an effect or a drive is on joints that turn; `None` if it has no `on`.
     fn is_on_turning(&mut self, entry: &Entry, scope: &Scope) -> Option<bool> {
         let Value::Mapping(kinds) = &entry.value.value else { return None };
         let on = kinds.first()?.value.get("on")?.scalar()?;
@@ -162,7 +162,8 @@ impl Writer<'_, '_> {
     }
 }
 
-/// Coordinates held in the model's frame, of a body that has some lengths as coordinates, and perhaps turns.
+/// Prescribed coordinates of a body, in the model's frame. `free`: its lengths that are coordinates; `turns`: whether
+/// it can turn.
 fn held_in_model(
     held: &[Entry],
     frame: InstanceFrame,

@@ -1,4 +1,4 @@
-//! `instances:`, copies of assemblies with names, parameters and places of their own.
+//! `instances:`, copies of assemblies with names, parameters and placements of their own.
 
 use std::sync::Arc;
 
@@ -21,7 +21,7 @@ use crate::syntax::yaml::{Entry, Node, Value};
 /// Sections whose entries an instance has under its own name.
 const NAMED: [&str; 6] = ["bodies", "joints", "effects", "states", "initial", "guess"];
 
-/// What stands before the numbers of an instance's place.
+/// Prefix of the numbers of an instance's placement.
 const AT: &str = "at";
 
 /// An instance to be written out.
@@ -34,12 +34,12 @@ struct New {
     /// Parameters that it gives.
     given: Vec<Entry>,
     placement: InstancePlacement,
-    /// Of the instance that it is in.
+    /// Scope of the instance that it is in.
     outer: Option<Arc<Scope>>,
 }
 
 impl Writer<'_, '_> {
-    /// Writes out the instances of the model, and what all instances of an assembly share.
+    /// Writes out the instances of the model, and the entries that all instances of an assembly share.
     pub(super) fn instances_of_model(&mut self, root: &Node) {
         let mut names: Vec<String> = self.definitions.keys().cloned().collect();
         names.sort_unstable();
@@ -266,7 +266,7 @@ impl Writer<'_, '_> {
     }
 }
 
-/// Names that are there again: name, place, first place.
+/// Names that occur again: name, location, first location.
 fn duplicates(entries: &[Entry]) -> Vec<(String, Span, Span)> {
     let mut first = std::collections::HashMap::new();
     let mut found = Vec::new();

@@ -29,14 +29,14 @@ pub(super) fn write_out(writer: &mut Writer) {
     }
 }
 
-/// What an effect acts on, where that is many.
+/// The `on` of an effect that acts on all subjects of a kind; `None` for any other.
 fn on(effect: &Node) -> Option<&Node> {
     let Value::Mapping(kinds) = &effect.value else { return None };
     let [kind] = kinds.as_slice() else { return None };
     kind.value.get("on").filter(|node| node.scalar().is_some_and(|scalar| wanted(scalar).is_some()))
 }
 
-/// What stands behind `all`.
+/// Text after `all`.
 fn wanted(scalar: &Scalar) -> Option<&str> {
     scalar.text.trim().strip_prefix("all ").map(str::trim)
 }

@@ -1,4 +1,4 @@
-//! `mirror: y`: what the entries of an instance are in the image that a mirror shows.
+//! `mirror: y`: entries of an instance in the image that a mirror shows.
 //!
 //! M is the reflection at the plane through the instance's origin across the axis. A body at r with the rotation R is
 //! at M r with M R M, so a polar vector v of any frame becomes M v, an axial one, of a rotation or a torque, −M v. Axes
@@ -17,7 +17,7 @@ use crate::syntax::mirrors::Mirrors;
 use crate::syntax::source::Span;
 use crate::syntax::yaml::{Entry, Node, Scalar, Value};
 
-/// What the keys of a joint or an effect are to an instance; of an unknown kind nothing, which its reader reports.
+/// Images of the keys of a joint or an effect; none for an unknown kind, which its reader reports.
 pub(super) fn images(keyword: &str) -> Vec<KeyImage> {
     EffectKind::images(keyword).or_else(|| JointKind::images(keyword)).unwrap_or_default()
 }
@@ -85,12 +85,12 @@ fn image_of_shape(shape: &mut Node, axis: usize) {
     image_of_keys(keys, &images, axis, None);
 }
 
-/// Whether the image of an effect is another where it is on a joint that turns.
+/// Whether the image of an effect differs if it is on a joint that turns.
 pub(super) fn tells_turns(effect: &Entry) -> bool {
     has_image(effect, |image| matches!(image, Image::Turning | Image::Effort | Image::End(_)))
 }
 
-/// Whether what an effect measures along a joint that turns counts the other way in a mirror.
+/// Whether a mirror changes the sign of the quantities that an effect measures on a joint that turns.
 pub(super) fn measures_turns(effect: &Entry) -> bool {
     has_image(effect, |image| matches!(image, Image::Turning))
 }

@@ -36,7 +36,7 @@ pub use in_model::Inclined;
 pub use placement::{GROUND, is_ground};
 use ports::Port;
 
-/// What the written-out tree has beside its nodes.
+/// Data of the written-out tree, in addition to its nodes.
 #[derive(Clone, Default)]
 pub struct Parts {
     /// Instances and effects on many.
@@ -60,7 +60,7 @@ pub struct WrittenOut {
     pub parts: Parts,
 }
 
-/// Writes out a model's tree; nothing where there is nothing to be written out.
+/// Writes out a model's tree; `None` if there is nothing to be written out.
 pub fn write_out(report: &mut Report, root: &Node, text: &str, overrides: &[(Override, Span)]) -> Option<WrittenOut> {
     let words = ["include", "assemblies", "instances", "repeat", "sum", "all "];
     if !words.iter().any(|word| text.contains(word)) {
@@ -107,9 +107,9 @@ struct Writer<'w, 'd> {
     report: &'w mut Report<'d>,
     /// Assemblies by their names.
     definitions: HashMap<String, Arc<Entry>>,
-    /// What the command line sets.
+    /// Values from the command line, by parameter.
     overrides: HashMap<String, Node>,
-    /// Of the model itself.
+    /// Scope of the model itself.
     model: Arc<Scope>,
     parts: Parts,
     /// Sections of the tree.
@@ -151,7 +151,7 @@ impl Writer<'_, '_> {
         self.entries(section).get(range.clone()).unwrap_or_default().to_vec()
     }
 
-    /// Puts entries in the places of others.
+    /// Replaces a range of entries.
     fn put(&mut self, section: &str, range: &Range<usize>, entries: Vec<Entry>) {
         if let Some(found) = self.section(section, &(0..0)).and_then(|found| found.get_mut(range.clone())) {
             found.iter_mut().zip(entries).for_each(|(index, entry)| *index = entry);
@@ -179,7 +179,7 @@ impl Writer<'_, '_> {
 }
 
 impl Parts {
-    /// What the command line sets, with an assembly's parameter set in every instance that follows it.
+    /// Overrides of the command line, with an assembly's parameter set in every instance that follows it.
     pub fn follow(&self, overrides: Vec<(Override, Span)>) -> Vec<(Override, Span)> {
         let follow = |(wanted, span): (Override, Span)| match self.followers.get(&wanted.name) {
             None => vec![(wanted, span)],

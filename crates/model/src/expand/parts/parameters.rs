@@ -47,8 +47,8 @@ impl Writer<'_, '_> {
         counts
     }
 
-    /// The parameters of an instance, by their full names: `own` is the assembly's copy for it, `given` what the
-    /// instance says.
+    /// The parameters of an instance, by their full names: `own` is the assembly's copy for it, `given` the instance's
+    /// entries.
     pub(super) fn parameters(
         &mut self,
         definition: &str,
@@ -112,7 +112,7 @@ pub(super) fn is_shared(shared: Option<&Node>, name: &str) -> bool {
     }
 }
 
-/// The scope of what the instances of an assembly share.
+/// Scope of the entries that the instances of an assembly share.
 pub(super) fn scope_of_shared(definition: &str) -> Scope {
     Scope::of_instance(definition, None, std::sync::Arc::default())
 }

@@ -1,7 +1,7 @@
 //! `at` and `mirror` of instances: where an assembly's ground is in the model.
 //!
-//! What an instance says of its place are its parameters `at.x` and so on, in the frame of the instance that it is in.
-//! Where it is in the model follows: `at.model.x`, … ([`crate::syntax::frame`]).
+//! The placement of an instance is given by its parameters `at.x` and so on, in the frame of the instance that it is
+//! in. Its placement in the model follows: `at.model.x`, … ([`crate::syntax::frame`]).
 
 use std::sync::Arc;
 
@@ -29,7 +29,7 @@ pub(super) const AXES: [&str; 3] = ["x", "y", "z"];
 /// Names of the angles of `rpy`.
 const ANGLES: [&str; 3] = ["roll", "pitch", "yaw"];
 
-/// What an instance says of its place.
+/// Placement of an instance, as written.
 #[derive(Clone, Default)]
 pub(super) struct InstancePlacement {
     mirrors: Mirrors,
@@ -113,7 +113,7 @@ impl Writer<'_, '_> {
         Some(placement)
     }
 
-    /// Reads the rotation of a place; its numbers are parameters, too.
+    /// Reads the rotation of a placement; its numbers are parameters, too.
     fn rotation(&mut self, placement: &mut InstancePlacement, prefix: &str, node: &Node, at: Span) -> Option<()> {
         let (kind, fields) = self.report.kind_of_rotation(node, at)?;
         let value = fields.get(kind)?;
@@ -249,7 +249,7 @@ fn in_model(
 ) -> Vec<(String, String)> {
     let own = placement.frame();
     let (around, place) = outer.and_then(|outer| Some((outer.frame()?, outer.full(PLACE)))).unwrap_or_default();
-    // The place of an image is the image of the place.
+    // The position of an image is the image of the position.
     let position = [0, 1, 2].map(|axis| {
         let text = if own.moved[axis] { format!("{prefix}at.{}", AXES[axis]) } else { "0".to_owned() };
         signed(&text, around.mirrors.flips(axis))

@@ -21,7 +21,7 @@ pub struct Port {
 }
 
 impl Writer<'_, '_> {
-    /// Notes the ports of an instance; one with a place of its own becomes a point of its body.
+    /// Notes the ports of an instance; one with a position of its own becomes a point of its body.
     pub(super) fn ports(&mut self, prefix: &str, entries: Vec<Entry>, mirrors: Mirrors) {
         for mut entry in entries {
             if matches!(entry.value.value, Value::Mapping(_)) {

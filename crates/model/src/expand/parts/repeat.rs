@@ -19,7 +19,7 @@ const REPEAT: &str = "repeat";
 /// The key of the repeated value, where that is no mapping.
 const VALUE: &str = "value";
 
-/// Where a node is copied to: how much further on, and what its names stand for there.
+/// Where a node is copied to: the shift of its span, and the scope of its names there.
 type Place<'s> = (usize, Option<&'s Arc<Scope>>);
 
 impl Writer<'_, '_> {
@@ -59,7 +59,7 @@ impl Writer<'_, '_> {
         self.parts.counts.extend(counts.map(|count| scope.full(count)));
     }
 
-    /// Entries with their repetitions written out, each in the place of the one that is repeated.
+    /// Entries with their repetitions written out, each at the position of the one that is repeated.
     pub(super) fn repeated(&mut self, entries: &[Entry], shift: usize, scope: Option<&Arc<Scope>>) -> Vec<Entry> {
         let mut written: Vec<Entry> = Vec::with_capacity(entries.len());
         let mut places: HashMap<String, Span> = HashMap::new();

@@ -11,7 +11,7 @@ use crate::syntax::frame::{InstanceFrame, PLACE, TextVector, Turned, signed, sum
 use crate::syntax::scope::Scope;
 use crate::syntax::yaml::Entry;
 
-/// What a start value is of.
+/// Kind of object that a start value belongs to.
 enum Of {
     /// A body, or a point of one.
     Place,
@@ -49,7 +49,7 @@ impl Writer<'_, '_> {
         self.parts.port(name).unwrap_or(name)
     }
 
-    /// What something is that has start values.
+    /// Kind of an object by its name; `None` if it has no start values.
     fn of(&self, owner: &str) -> Option<Of> {
         let is_body = |name: &str| self.bodies.contains(self.held_by(name));
         if is_body(owner) {
@@ -129,7 +129,7 @@ impl Writer<'_, '_> {
         }
     }
 
-    /// The start of a component of a place, of its velocity, or of a body's rate of rotation.
+    /// Converts the start of a component of a position, of its velocity, or of a body's rate of rotation.
     fn component(
         &mut self,
         start: &mut Entry,
@@ -184,7 +184,7 @@ impl Writer<'_, '_> {
     }
 }
 
-/// What the assembly calls it.
+/// Name of the start value in the assembly.
 fn own_name<'e>(start: &'e Entry, scope: &Scope) -> &'e str {
     start.key.strip_prefix(scope.prefix()).unwrap_or(&start.key)
 }

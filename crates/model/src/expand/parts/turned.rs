@@ -9,7 +9,7 @@ use crate::syntax::scope::Scope;
 use crate::syntax::source::Span;
 use crate::syntax::yaml::{Entry, Node, Value};
 
-/// Turns a list of components; a number stays, and so does a list that is none.
+/// Turns a list of components; numbers and malformed lists stay as they are.
 pub(super) fn turn(node: &mut Node, frame: InstanceFrame, scope: &Arc<Scope>) {
     let span = node.span.clone();
     let scope = scope_of(node, scope);
@@ -38,7 +38,7 @@ pub(super) fn euler(p: [Node; 4], span: &Span) -> Node {
     Node { span: span.clone(), value: Value::Mapping(vec![key]) }
 }
 
-/// The Euler parameters of a rotation, of any length; nothing where it is not well formed, which its reader reports.
+/// The Euler parameters of a rotation, of any length; `None` if it is not well formed, which its reader reports.
 pub(super) fn quaternion(node: &Node) -> Option<[String; 4]> {
     let list = |node: &Node| match &node.value {
         Value::Sequence(items) => texts(items),

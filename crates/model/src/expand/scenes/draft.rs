@@ -13,7 +13,7 @@ use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};
 use crate::syntax::yaml::{Entry, Node, Value};
 
-/// Sections whose entries can be left out by name.
+/// Sections whose entries can be omitted by name.
 const NAMED: [&str; 4] = ["effects", "joints", "states", "outputs"];
 
 /// Sections of bodies, joints and effects, and that of outputs.
@@ -34,7 +34,7 @@ const BY_NAME: [(&str, &str); 7] = [
 /// Keys whose value in a scene stands instead of the model's.
 const WHOLE: [&str; 6] = ["description", "limits", "bounds", "statistics", "analysis", "modes"];
 
-/// What says how far a parameter may be off.
+/// Keys of a parameter's deviation.
 const DEVIATION: [&str; 4] = ["tolerance", "interval", "plus", "minus"];
 
 /// A tree in the making.
@@ -55,7 +55,7 @@ impl TreeDraft {
         for (section, what) in BY_NAME {
             let Some(node) = fields.get(section) else { continue };
             if node.scalar().is_some_and(|scalar| !scalar.is_null()) {
-                // `initial: equilibrium`; what else it may be is the report's to say.
+                // `initial: equilibrium`; any other word is reported later.
                 let entry = Entry { key: section.to_owned(), key_span: fields.key_span(section), value: node.clone() };
                 replace(&mut self.entries, entry);
                 continue;
@@ -84,7 +84,7 @@ impl TreeDraft {
         }
     }
 
-    /// The entries of a section, which is made if it is not there; nothing where it is no mapping, as is reported of
+    /// The entries of a section, which is created if it is absent; `None` if it is no mapping, which is reported for
     /// the model.
     fn section(&mut self, key: &str, key_span: Span, like: &Node) -> Option<&mut Vec<Entry>> {
         let is_word = |entry: &Entry| key == "initial" && entry.value.scalar().is_some();
@@ -254,7 +254,7 @@ impl TreeDraft {
     }
 }
 
-/// Puts an entry in the place of the one with its key, or behind the others.
+/// Replaces the entry with the same key, or adds it at the end.
 fn replace(entries: &mut Vec<Entry>, entry: Entry) {
     match entries.iter_mut().find(|known| known.key == entry.key) {
         Some(known) => *known = entry,
@@ -262,7 +262,7 @@ fn replace(entries: &mut Vec<Entry>, entry: Entry) {
     }
 }
 
-/// The texts of a list, each with its place.
+/// The texts of a list, each with its location.
 fn names(report: &mut Report, node: &Node, wanted: &str) -> Vec<(String, Span)> {
     let Value::Sequence(items) = &node.value else {
         let help = "write `[name, name]`".to_owned();

@@ -1,7 +1,7 @@
 //! `scenes:`, named variants of a model, and `without:`, omitted parts of a model.
 //!
 //! A scene is the model's tree with the scene's changes laid over it, read as a model of its own: an absent part was
-//! never there, and every node keeps its place in the file.
+//! never there, and every node keeps its location in the file.
 
 pub mod draft;
 
@@ -18,7 +18,7 @@ use crate::syntax::yaml::{Entry, Node, Value};
 
 /// A model, or a scene of it, as a tree to be read.
 pub struct Variant {
-    /// Of the scene; absent for the model itself.
+    /// Name of the scene; `None` for the model itself.
     pub scene: Option<String>,
     /// The tree, without `scenes`, `without`, and the omitted parts.
     pub root: Node,
@@ -26,17 +26,17 @@ pub struct Variant {
     pub left_out: Vec<String>,
     /// Omitted parts of a robot: their names are known only when its file is read.
     pub robot: OmittedEffects,
-    /// Whether parameters may be unused because something else is left out.
+    /// Whether parameters may be unused because something else is omitted.
     pub partial: bool,
 }
 
-/// Effects of a robot that are left out.
+/// Omitted effects of a robot.
 #[derive(Clone, Default)]
 pub struct OmittedEffects {
     all: bool,
-    /// Left out by name.
+    /// Omitted by name.
     names: Vec<(String, Span)>,
-    /// Of all, those that are in again.
+    /// Effects put in again although all are omitted.
     kept: Vec<(String, Span)>,
 }
 
@@ -51,7 +51,7 @@ impl OmittedEffects {
         self.all || !self.names.is_empty()
     }
 
-    /// Every name that was given, with its place.
+    /// Every name that was given, with its location.
     pub fn given(&self) -> impl Iterator<Item = &(String, Span)> {
         self.names.iter().chain(&self.kept)
     }
@@ -95,7 +95,7 @@ impl<'n> Scenes<'n> {
         self.layers.len()
     }
 
-    /// The place of a scene's name, and of all of it.
+    /// Locations of a scene's name, and of the whole scene.
     pub fn place(&self, scene: usize) -> (Span, Span) {
         let entry = self.layers[scene].entry;
         (entry.key_span.clone(), entry.key_span.start..entry.value.span.end.max(entry.key_span.end))
@@ -199,7 +199,7 @@ fn break_circle(report: &mut Report, layers: &mut [Layer], start: usize) {
     }
 }
 
-/// Reports a name of nothing that could be left out.
+/// Reports a name of nothing that could be omitted.
 pub fn unknown<'k>(report: &mut Report, name: &str, span: Span, known: impl IntoIterator<Item = &'k str>) {
     let message = format!("there is no effect, joint or output `{}`", clip(name));
     let help = suggest::help(name, "names", known);
