@@ -1,4 +1,4 @@
-//! A program in place of a mechanism.
+//! A program instead of a mechanism.
 
 use indexmap::IndexMap;
 use schemars::JsonSchema;
@@ -34,7 +34,7 @@ grammar! {
         /// A unit of FMI 2.0 or 3.0, instead of a command: a file in the model's folder or below. It is native code,
         /// and running it is trusting it.
         fmu: Option<String>,
-        /// How a unit moves on; by default by co-simulation, where it has that.
+        /// How a unit advances in time; by default by co-simulation, if it supports that.
         interface: Option<InterfaceName>,
         /// Names of variables of the unit, by the names of parameters and outputs that stand for them here.
         variables: Option<IndexMap<String, String>>,

@@ -19,7 +19,7 @@ grammar! {
         inertia: Option<InertiaFile> as Image::Keys(<Tensor as Grammar>::images),
         /// In the body's frame, m; by default the frame's origin.
         center_of_mass: Option<Components> as Image::Polar,
-        /// What can change; by default x, y and angle, in space x, y, z and orientation.
+        /// Coordinates that can change; by default x, y and angle, in space x, y, z and orientation.
         coordinates: Option<Vec<CoordinateName>>,
         /// Values of the coordinates that cannot change, or formulas of t; by default 0.
         held: Option<Held> as Image::Keys(<Held as Grammar>::images),
@@ -57,7 +57,7 @@ grammar! {
     PointFrame is "a point" {
         /// In the body's frame, m; by default its origin.
         position: Option<Components> as Image::Polar,
-        /// Of the frame at the point against the body's; by default none.
+        /// Rotation of the frame at the point against the body's; by default none.
         rotation: Option<Rotation> as Image::Rotation,
         /// The zone in which it lies about its position: a `disc` in the body's plane, or a `sphere`.
         zone: Option<ZoneFile>,

@@ -1,7 +1,8 @@
-//! What the schema says beyond keys and types: ranges of numbers, keys that exclude or need each other, defaults and
-//! examples.
+//! Constraints of the schema beyond keys and types: ranges of numbers, keys that exclude or need each other, defaults
+//! and examples.
 //!
-//! Only what the reader refuses for certain is refused: formulas, and what depends on names, are the reader's.
+//! The schema refuses only values that the reader refuses for certain: formulas, and values that depend on names, are
+//! the reader's.
 
 use schemars::Schema;
 use serde_json::{Map, Value, json};
@@ -155,7 +156,7 @@ fn of_parameter(parameter: &mut Value) {
     }
 }
 
-/// Of a link of a robot, to which the model gives points.
+/// Schema of a link of a robot, to which the model gives points only.
 fn only_points() -> Value {
     json!({ "required": ["points"], "maxProperties": 1 })
 }

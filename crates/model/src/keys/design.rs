@@ -22,7 +22,7 @@ schema_only! {
         Cost,
     }
 
-    /// What a design is to achieve.
+    /// Objective of a design.
     #[schemars(untagged, inline)]
     pub enum ObjectiveFile {
         Name(ObjectiveName),

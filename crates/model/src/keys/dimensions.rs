@@ -28,7 +28,7 @@ grammar! {
         minus: Option<Number>,
         /// How it is distributed; by default uniformly over its interval.
         distribution: Option<LawFile>,
-        /// What its tolerance costs, for `mbint allocate`.
+        /// Cost of its tolerance, for `mbint allocate`.
         cost: Option<CostFile>,
         /// Description for people.
         description: Option<String>,

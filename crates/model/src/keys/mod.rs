@@ -34,7 +34,7 @@ pub use zones::*;
 use crate::grammar::mapping::grammar;
 use crate::grammar::values::{Components, Number, Rotation, UnitName};
 
-/// What the schema is called by those that refer to it.
+/// Identifier of the schema, by which others refer to it.
 const SCHEMA_ID: &str = "https://raw.githubusercontent.com/mbint/mbint/main/schemas/mbint.schema.json";
 
 /// Version of the language of model files: the second number grows with every key that is added, the first one where a
@@ -55,7 +55,7 @@ pub fn schema() -> String {
     text
 }
 
-/// A key may be left out, but a value that is given is one: only a mapping may be written as nothing (`taylor:`).
+/// Removes null from the values of a key: it may be omitted, but only a mapping may be written as nothing (`taylor:`).
 fn without_null(schema: &mut Schema) {
     let null = serde_json::json!({ "type": "null" });
     if let Some(serde_json::Value::Array(choices)) = schema.get_mut("anyOf") {

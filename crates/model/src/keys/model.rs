@@ -16,11 +16,11 @@ grammar! {
         description: Option<String>,
         /// Whether the mechanism stays in the plane; by default it does where nothing in the file leaves it.
         space: Option<SpaceName>,
-        /// A robot to begin with: a URDF file, beside this one. Its links are bodies, its numbers parameters.
+        /// A robot to begin with: a URDF file, next to this one. Its links are bodies, its numbers parameters.
         urdf: Option<String>,
         /// Whether the robot's root link is fixed to the ground, which is the default.
         base: Option<BaseName>,
-        /// A robot to begin with: an MJCF file (MuJoCo's XML), beside this one. Its bodies are bodies, its numbers
+        /// A robot to begin with: an MJCF file (MuJoCo's XML), next to this one. Its bodies are bodies, its numbers
         /// parameters.
         mjcf: Option<String>,
         /// Commands to the actuators of the `mjcf`, by name: numbers, or formulas of t and the motion.
@@ -31,7 +31,7 @@ grammar! {
         dimensions: Option<IndexMap<String, DimensionFile>>,
         /// Zones of deviations, by name: each is one cause. Formulas have its deviations as parameters.
         zones: Option<IndexMap<String, ZoneFile>>,
-        /// Files of assemblies, beside this one or below.
+        /// Files of assemblies, next to this one or below.
         include: Option<IncludeFile>,
         /// Mechanisms that the model has instances of.
         assemblies: Option<IndexMap<String, Assembly>>,
@@ -46,11 +46,11 @@ grammar! {
         excitations: Option<IndexMap<String, Excitation>>,
         /// Bodies, rigid or beams. `ground` is there already, and may be given points.
         bodies: Option<IndexMap<String, Body>>,
-        /// What constrains the bodies.
+        /// Joints, which constrain the bodies.
         joints: Option<IndexMap<String, JointKind>>,
-        /// What moves the bodies.
+        /// Effects, which move the bodies.
         effects: Option<IndexMap<String, EffectKind>>,
-        /// Numbers that change as formulas say, beside the motion: integrals, currents, what a controller remembers.
+        /// Numbers that change as formulas say, in addition to the motion: integrals, currents, a controller's memory.
         states: Option<IndexMap<String, State>>,
         /// Analysis of the mechanism; by default its `motion`.
         analysis: Option<AnalysisName>,
@@ -61,7 +61,7 @@ grammar! {
         /// Coordinates and velocities at the start, e.g. `crank.angle: 30 deg`; assembly finds the others. Or
         /// `equilibrium`.
         initial: Option<InitialFile>,
-        /// Where assembly begins to look for coordinates, e.g. `rocker.angle: 60 deg`.
+        /// Coordinates from which assembly starts its search, e.g. `rocker.angle: 60 deg`.
         guess: Option<IndexMap<String, StartFile>>,
         /// Outputs: names with formulas, e.g. `x3: slider.x`, or reduced to one number a motion, e.g.
         /// `stroke: { range: slider.x }`.
@@ -71,13 +71,13 @@ grammar! {
         /// Parameters whose nominal values `mbint design` chooses, with ranges, e.g. `rod: 0.2 to 0.3 m`. Tolerances go
         /// with the values.
         design: Option<IndexMap<String, DesignRange>>,
-        /// What `mbint design` looks for.
+        /// Objective of `mbint design`.
         objective: Option<ObjectiveFile>,
         /// How long, and in which steps; `analysis: statics` needs none.
         simulation: Option<Simulation>,
         /// Which bounds to compute; without this, Chebyshev of order 5.
         bounds: Option<crate::methods::keys::Bounds>,
-        /// How the outputs are distributed, beside their bounds.
+        /// Distributions of the outputs, in addition to their bounds.
         statistics: Option<Statistics>,
         /// Makes stops of the limits of the robot's joints; by default they do nothing.
         limits: Option<Limits>,
@@ -140,10 +140,10 @@ grammar! {
         alpha: Option<Number>,
         /// s between rows of output.
         output_step: Option<Number>,
-        /// By which coordinates the motion is described. With `joint`, one joint of each loop is a constraint: the one
-        /// with which a step is shortest.
+        /// Coordinates that describe the motion. With `joint`, one joint of each loop is a constraint: the one with
+        /// which a step is shortest.
         formulation: Option<FormulationName>,
-        /// By what the motion is integrated.
+        /// Scheme that integrates the motion.
         scheme: Option<SchemeName>,
         /// Number of step lengths, each half the one before, to combine for an order one higher: 2, 3 or 4.
         extrapolation: Option<u32>,
@@ -155,13 +155,14 @@ grammar! {
         at: Option<LinearisedAtName>,
         /// How many modes are reported, the slowest first; by default 6.
         number: Option<u32>,
-        /// What harmonic loads do, by name.
+        /// Responses to harmonic loads, by name.
         responses: Option<IndexMap<String, Response>>,
     }
 
-    /// What a harmonic load of 1 N, or 1 N m, does to an output.
+    /// Response of an output to a harmonic load of 1 N, or 1 N m.
     Response is "a response" {
-        /// The output along which the load acts, a length or an angle: it does work on what the output measures.
+        /// The output along which the load acts, a length or an angle: the load does work on the quantity that it
+        /// measures.
         load: String,
         /// The output that is observed.
         output: String,
@@ -195,7 +196,7 @@ grammar! {
         minus: Option<Number>,
         /// How it is distributed, for statistics; by default uniformly over its interval.
         distribution: Option<LawFile>,
-        /// What its tolerance costs, for `mbint allocate`.
+        /// Cost of its tolerance, for `mbint allocate`.
         cost: Option<CostFile>,
         /// Description for people.
         description: Option<String>,
@@ -272,7 +273,7 @@ grammar! {
     /// A function of one number by its values: a natural cubic spline through them, which goes on straight beyond its
     /// ends, a periodic one, or straight lines.
     Table is "a table" {
-        /// A CSV file, beside the model; `#` begins a comment.
+        /// A CSV file, next to the model; `#` begins a comment.
         file: Option<String>,
         /// Names or numbers (from 1) of the file's columns with argument and value; by default the first two.
         columns: Option<[Column; 2]>,

@@ -20,15 +20,15 @@ grammar! {
         shared: Option<SharedFile>,
         /// Its bodies. `ground` is the model's, or where the instance is placed; it may be given points.
         bodies: Option<IndexMap<String, Body>>,
-        /// What constrains its bodies.
+        /// Joints, which constrain its bodies.
         joints: Option<IndexMap<String, JointKind>>,
-        /// What moves its bodies.
+        /// Effects, which move its bodies.
         effects: Option<IndexMap<String, EffectKind>>,
         /// Numbers of its own that change as formulas say.
         states: Option<IndexMap<String, State>>,
         /// Coordinates and velocities at the start.
         initial: Option<IndexMap<String, StartFile>>,
-        /// Where assembly begins to look for coordinates.
+        /// Coordinates from which assembly starts its search.
         guess: Option<IndexMap<String, StartFile>>,
         /// Bodies and points by which others hold it: `hub: upright.hub`.
         ports: Option<IndexMap<String, PortFile>>,
@@ -61,9 +61,9 @@ grammar! {
 
     /// Where an instance is.
     PlaceFile is "`at`" {
-        /// Of the assembly's origin, m.
+        /// Position of the assembly's origin, m.
         position: Option<Components>,
-        /// About z, rad.
+        /// Angle about z, rad.
         angle: Option<Number>,
         /// In space; that about z is the same as `angle`.
         rotation: Option<Rotation>,
@@ -75,7 +75,7 @@ grammar! {
         on: String,
         /// In the body's frame, m; by default its origin.
         position: Option<Components>,
-        /// Of the frame at the port against the body's; by default none.
+        /// Rotation of the frame at the port against the body's; by default none.
         rotation: Option<Rotation>,
     }
 }

@@ -21,7 +21,7 @@ schema_only! {
         Limits(Box<Requirement>),
     }
 
-    /// Abscissa and ordinate of a path, or an ordinate that is held against a `line`.
+    /// Abscissa and ordinate of a path, or an ordinate that is compared with a `line`.
     #[schemars(untagged, inline)]
     pub enum PathFile {
         Path([Number; 2]),
@@ -83,7 +83,7 @@ grammar! {
         target: Option<Number>,
         /// Half the width of the band of `settling`.
         band: Option<Number>,
-        /// What the ordinate of `straightness` is held against.
+        /// Line that the ordinate of `straightness` is compared with.
         line: Option<Number>,
         /// In which unit reports and tables show it, e.g. `mm`. Numbers in files stay in SI.
         unit: Option<UnitName>,

@@ -1,4 +1,4 @@
-//! What the schema says of `repeat`, which may stand in every entry that has a name.
+//! Schema of `repeat`, which may stand in every entry that has a name.
 
 use serde_json::{Map, Value, json};
 

@@ -19,10 +19,10 @@ grammar! {
         /// s between rows of output; by default about a 200th of the duration. The last row is at the end, however
         /// near.
         output_step: Option<Number>,
-        /// By which coordinates the motion is described; by default `auto`, whichever take fewer instructions. With
-        /// `joint`, one joint of each loop is a constraint: the one with which a step is shortest.
+        /// Coordinates that describe the motion; by default `auto`, whichever take fewer instructions. With `joint`,
+        /// one joint of each loop is a constraint: the one with which a step is shortest.
         formulation: Option<FormulationName>,
-        /// By what the motion is integrated; by default `auto`.
+        /// Scheme that integrates the motion; by default `auto`.
         scheme: Option<SchemeName>,
         /// Number of step lengths, each half the one before, to combine for an order one higher: 2, 3 or 4.
         extrapolation: Option<u32>,

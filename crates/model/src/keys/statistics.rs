@@ -31,7 +31,7 @@ schema_only! {
         Fixed,
     }
 
-    /// What a tolerance costs.
+    /// Cost of a tolerance.
     #[schemars(untagged, inline)]
     pub enum CostFile {
         /// It stays as it is.
@@ -113,7 +113,7 @@ grammar! {
     CorrelationFile is "a correlation" {
         /// Names of uncertain parameters.
         of: Vec<String>,
-        /// Of any two of them.
+        /// Correlation coefficient of any two of them.
         coefficient: Option<f64>,
         /// Instead: a row for each, with ones on the diagonal.
         matrix: Option<Vec<Vec<f64>>>,

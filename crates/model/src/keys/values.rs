@@ -1,4 +1,4 @@
-//! What stands behind a key: numbers, names of things, and short forms.
+//! Values of keys: numbers, names of things, and short forms.
 
 use indexmap::IndexMap;
 use schemars::JsonSchema;

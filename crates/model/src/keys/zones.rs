@@ -33,7 +33,7 @@ grammar! {
         parallelism: Option<Number>,
         /// Semi-axes of an ellipse or an ellipsoid, by the names of two or three deviations: `NAME_k1`.
         ellipsoid: Option<IndexMap<String, Number>>,
-        /// Of an ellipse: correlation of its two deviations; it is inclined then.
+        /// Correlation of the two deviations of an ellipse, which is inclined then.
         correlation: Option<Number>,
         /// How it is distributed within; by default `uniform`.
         distribution: Option<ZoneLawName>,
