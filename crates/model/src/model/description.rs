@@ -92,7 +92,7 @@ pub struct Space {
     /// Whether a body has six degrees of freedom unless it declares its coordinates, and joints constrain all six. A
     /// planar mechanism has z = 0 everywhere and turns about z only.
     pub spatial: bool,
-    /// For people: what leaves the plane, or that nothing does.
+    /// For people: the part of the model that leaves the plane, or that there is none.
     pub why: String,
 }
 
@@ -164,7 +164,7 @@ pub struct Output {
     pub formula: Formula,
     /// SI unit derived from the formula, for axes; empty where dimensionless or unknown.
     pub unit: String,
-    /// What kind of quantity it is; `None` where unknown.
+    /// Dimension; `None` if unknown.
     pub dimension: Option<Dimension>,
     /// Whether the formula names results of the analysis, and other outputs: it is known when these are.
     pub of_results: bool,

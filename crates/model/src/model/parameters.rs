@@ -245,7 +245,7 @@ fn written(reader: &mut Reader, draft: &ParameterDraft, kind: &mut KnownDimensio
     interval::bounds(reader, &own, nominal, kind)
 }
 
-/// Reads the law of an uncertain parameter, and what its tolerance costs.
+/// Reads the law of an uncertain parameter, and the cost of its tolerance.
 fn says_more(
     reader: &mut Reader,
     draft: &ParameterDraft,
@@ -279,7 +279,7 @@ fn settle(reader: &mut Reader, draft: &ParameterDraft, index: usize, kind: Known
     };
 }
 
-/// The unit that is declared, or that stands behind the value; `None` where it is of SI.
+/// The declared unit, or the one after the value; `None` for one of SI.
 fn written_unit(draft: &ParameterDraft) -> Option<DisplayUnit> {
     let text = |node: &Option<Node>| Some(node.as_ref()?.scalar()?.text.clone());
     let (unit, text) = match (draft.unit, &draft.value) {
@@ -304,7 +304,7 @@ fn nominal(
             if let Some(declared) = declared {
                 reader.check_fits(&node.span, unit.dimension, declared.dimension);
             }
-            // The declared one is what users of the parameter count on.
+            // Users of the parameter rely on the declared dimension.
             let dimension = declared.map_or(unit.dimension, |declared| declared.dimension);
             Some((Formula::number(unit.to_si(*value)), KnownDimension::parameter(dimension)))
         }

@@ -1,4 +1,4 @@
-//! Analysis of a mechanism: it moves, or it is looked at in one configuration or in many.
+//! Analysis of a mechanism: it moves, or it is examined in one configuration or in many.
 
 /// Analysis of a mechanism.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -18,7 +18,7 @@ pub enum Analysis {
     Dimensions,
 }
 
-/// Where a mechanism's small vibrations are looked at.
+/// Configuration about which a mechanism's small vibrations are computed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum LinearisedAt {
     /// At its start.
@@ -75,11 +75,11 @@ impl Analysis {
 pub struct ModesRequest {
     /// How many modes, the slowest first.
     pub number: usize,
-    /// What harmonic loads do.
+    /// Responses to harmonic loads.
     pub responses: Vec<ResponseRequest>,
 }
 
-/// What a harmonic load does to an output.
+/// Response of an output to a harmonic load.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ResponseRequest {
     /// Its name in files.

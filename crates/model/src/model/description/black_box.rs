@@ -1,4 +1,4 @@
-//! A program in place of a mechanism.
+//! A program instead of a mechanism.
 
 use std::path::PathBuf;
 
@@ -9,9 +9,9 @@ use crate::grammar::display_unit::DisplayUnit;
 /// A program that is given points and answers with rows.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BlackBox {
-    /// Place in the model file, for people: `box.yaml:4`.
+    /// Location in the model file, for people: `box.yaml:4`.
     pub place: String,
-    /// What answers.
+    /// Program that computes the outputs.
     pub program: Program,
     /// Its outputs.
     pub outputs: Vec<BoxOutput>,
@@ -19,26 +19,26 @@ pub struct BlackBox {
     pub protocol: Protocol,
     /// Whether a process stays for further calls.
     pub persistent: bool,
-    /// Processes at once, at most; as many as threads where it is absent.
+    /// Largest number of processes at once; `None` for the number of threads.
     pub processes: Option<usize>,
-    /// Points of a call, at most; all where it is absent.
+    /// Largest number of points of a call; `None` for all.
     pub points: Option<usize>,
     /// Time that a point may take, s.
     pub time_limit: Option<f64>,
     /// How often a point that failed is tried again.
     pub retries: usize,
-    /// How the error of its own steps is found, where that is said.
+    /// How the error of its own steps is found, if that is given.
     pub refine: Option<Refine>,
 }
 
-/// What answers instead of a mechanism.
+/// Program that replaces a mechanism.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Program {
     /// A program.
     Command {
         /// The program, then its arguments.
         words: Vec<String>,
-        /// The folder in which it works; that of mbint where it is absent.
+        /// The folder in which it works; `None` for that of mbint.
         directory: Option<PathBuf>,
     },
     /// A unit of FMI, in a process of mbint.

@@ -48,7 +48,7 @@ pub struct Body {
     pub coordinates: Vec<Coordinate>,
     /// Values of coordinates that the body does not have (zero where not named).
     pub prescribed: Vec<(Coordinate, Formula)>,
-    /// Orientation of a body that does not turn, where it is more than an angle about z.
+    /// Orientation of a body that does not turn, if it is more than an angle about z.
     pub prescribed_orientation: Option<Rotation>,
     /// Named points in the body's frame, m.
     pub points: Vec<Point>,
@@ -58,7 +58,7 @@ pub struct Body {
     pub shapes: Vec<ShapeKind>,
 }
 
-/// How an instance stands: the frame in which assembly begins to look for its bodies.
+/// Standing of an instance: the frame in which assembly starts its search for the instance's bodies.
 #[derive(Clone, Copy, Debug)]
 pub struct Standing {
     /// The body that its ground is.
@@ -78,7 +78,7 @@ impl Body {
         self.coordinates.is_empty() && self.name.ends_with(".ground")
     }
 
-    /// Whether nothing of it is prescribed, so that a joint alone may say where it is.
+    /// Whether nothing of it is prescribed, so that a joint alone may determine its position.
     pub fn is_free(&self, spatial: bool) -> bool {
         let has = |coordinate: &Coordinate| self.coordinates.contains(coordinate);
         let coordinates: &[Coordinate] = if spatial {

@@ -24,12 +24,12 @@ pub struct Free {
     pub relative: [bool; 2],
 }
 
-/// What the best nominal values are best in; in any case all requirements are to hold.
+/// Objective of the best nominal values; in any case all requirements have to hold.
 #[derive(Clone, Debug)]
 pub enum Objective {
     /// The least margin of all requirements, each as a share of its limit.
     Margin,
-    /// The sum of what the tolerances cost, which are allocated with the nominal values.
+    /// Sum of the costs of the tolerances, which are allocated with the nominal values.
     Cost,
     /// The worst value of an output.
     Worst {

@@ -1,11 +1,11 @@
-//! Places of names in a list, so that a name of a long list is not looked for one by one.
+//! Indices of names in a list, so that a name of a long list is not searched for one by one.
 
 use std::collections::HashMap;
 use std::fmt;
 use std::sync::{Mutex, PoisonError};
 
-/// Remembers where the names of a list are. The list may grow, be cut, and be another one: a remembered index is
-/// compared with its end. A name that stays in its place stays as it is.
+/// Remembers the indices of the names in a list. The list may grow, be cut, and be another one: a remembered index is
+/// compared with its end. A name that keeps its index is not changed.
 #[derive(Default)]
 pub struct NameIndex(Mutex<Known>);
 

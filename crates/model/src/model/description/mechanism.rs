@@ -25,11 +25,11 @@ pub struct DeclaredMechanism {
     pub effects: Vec<Effect>,
     /// The program that answers instead of a mechanism, if there is one.
     pub black_box: Option<BlackBox>,
-    /// Whether the start is an equilibrium, near where assembly begins to look.
+    /// Whether the start is an equilibrium, near the start of assembly's search.
     pub starts_at_equilibrium: bool,
-    /// Coordinates and velocities that are kept at the start, with their values.
+    /// Prescribed coordinates and velocities at the start, with their values.
     pub initial: Vec<StartValue>,
-    /// Where assembly begins to look for the others.
+    /// Values from which assembly starts its search for the others.
     pub guess: Vec<StartValue>,
     /// Instances of assemblies, and effects on many, of which the parts have dots in their names.
     pub instances: Vec<Instance>,

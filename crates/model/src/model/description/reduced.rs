@@ -14,7 +14,7 @@ pub struct ReducedOutput {
     pub text: String,
     /// SI unit; empty where dimensionless or unknown.
     pub unit: String,
-    /// What kind of quantity it is; `None` where unknown.
+    /// Dimension; `None` if unknown.
     pub dimension: Option<Dimension>,
     /// Reduction of the motion.
     pub kind: ReducedKind,
@@ -59,8 +59,8 @@ pub enum ReducedKind {
     LastWhen,
     /// From when on the source stays negative.
     Settling,
-    /// How far it goes beyond its target (the second source; its own value at the end where there is none), seen from
-    /// its start.
+    /// How far it goes beyond its target (the second source; without one, its own value at the end), seen from its
+    /// start.
     Overshoot,
     /// The width of the narrowest strip that holds the path of both sources.
     Straightness,

@@ -21,9 +21,9 @@ pub struct TreeLink {
     pub depth: usize,
     /// kg, where the file has one.
     pub mass: Option<f64>,
-    /// Its frame; absent where the link is left out.
+    /// Its frame; `None` if the link is omitted.
     pub place: Option<PointRef>,
-    /// The joint that leads to it; absent for the root.
+    /// The joint that leads to it; `None` for the root.
     pub joint: Option<TreeJoint>,
     /// Appearance.
     pub visuals: Vec<Visual>,
@@ -38,9 +38,9 @@ pub struct TreeJoint {
     pub kind: &'static str,
     /// In the child's frame, where the joint has one coordinate.
     pub axis: Option<[f64; 3]>,
-    /// Smallest and largest position, where there is one.
+    /// Smallest and largest position; `None` for no limit.
     pub limits: [Option<f64>; 2],
-    /// What its position is.
+    /// Kind of its position: an angle or a displacement.
     pub coordinate: JointCoordinate,
     /// N m s/rad or N s/m
     pub damping: f64,

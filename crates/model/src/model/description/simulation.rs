@@ -11,15 +11,15 @@ pub struct Simulation {
     pub alpha: f64,
     /// s between rows of output.
     pub output_step: f64,
-    /// By which coordinates the motion is described.
+    /// Coordinates that describe the motion.
     pub formulation: Formulation,
-    /// By what the motion is integrated.
+    /// Scheme that integrates the motion.
     pub scheme: SchemeChoice,
-    /// Levels of step lengths that are combined; `None` where nothing is said.
+    /// Levels of step lengths that are combined; `None` if not given.
     pub extrapolation: Option<usize>,
 }
 
-/// By what a motion is integrated.
+/// Scheme that integrates a motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SchemeChoice {
     /// Under a tolerance whichever reaches it with the least work; else HHT-I3.

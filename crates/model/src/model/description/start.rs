@@ -7,7 +7,7 @@ use crate::grammar::{Coordinate, JointCoordinate, PointRef, Rotation, TimeOrder}
 /// A value at the start; formulas are of parameters.
 #[derive(Clone, Debug)]
 pub enum StartValue {
-    /// Of a coordinate.
+    /// Value of a coordinate.
     Coordinate {
         /// Body index, not the ground.
         body: usize,
@@ -18,14 +18,14 @@ pub enum StartValue {
         /// SI.
         value: Formula,
     },
-    /// Of a body's Euler parameters.
+    /// Values of a body's Euler parameters.
     Orientation {
         /// Body index.
         body: usize,
         /// From the body's frame to the ground's.
         rotation: Rotation,
     },
-    /// Of a body that has an orientation, rad/s.
+    /// Angular velocity of a body that has an orientation, rad/s.
     AngularVelocity {
         /// Body index.
         body: usize,
@@ -54,7 +54,7 @@ pub enum StartValue {
         /// rad/s
         value: Formula,
     },
-    /// Of a point's position or velocity, along an axis of the ground.
+    /// Value of a point's position or velocity, along an axis of the ground.
     Point {
         /// The point, of a body that is not the ground.
         place: PointRef,
@@ -65,7 +65,7 @@ pub enum StartValue {
         /// SI.
         value: Formula,
     },
-    /// Of a joint's coordinate.
+    /// Value of a joint's coordinate.
     Joint {
         /// Joint index.
         joint: usize,

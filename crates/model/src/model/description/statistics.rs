@@ -2,16 +2,16 @@
 
 use crate::numerics::statistics::Distribution;
 
-/// Questions beside the bounds.
+/// Questions in addition to the bounds.
 #[derive(Clone, Debug, Default)]
 pub struct Statistics {
     /// Whether anything is.
     pub asked: bool,
-    /// Number of samples; the default where it is left out.
+    /// Number of samples; `None` for the default.
     pub samples: Option<usize>,
     /// Seed of samples of random excitations.
     pub seed: usize,
-    /// Time within which failures are counted, s, where it is longer than the motion.
+    /// Time within which failures are counted, s, if it is longer than the motion.
     pub exposure: Option<f64>,
     /// Shares below the quantiles.
     pub quantiles: Vec<f64>,
@@ -19,7 +19,7 @@ pub struct Statistics {
     pub laws: Vec<(String, Law)>,
     /// Parameters that depend on each other.
     pub correlations: Vec<Correlation>,
-    /// What tolerances cost, by the names of uncertain parameters.
+    /// Costs of tolerances, by the names of uncertain parameters.
     pub costs: Vec<(String, Cost)>,
 }
 
@@ -41,7 +41,7 @@ pub struct Correlation {
     pub matrix: Vec<Vec<f64>>,
 }
 
-/// What a parameter's tolerance costs.
+/// Cost of a parameter's tolerance.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Cost {
     /// It stays as it is.
@@ -64,12 +64,12 @@ pub struct Grade {
 }
 
 impl Statistics {
-    /// What a parameter's tolerance costs, where the model says so.
+    /// Cost of a parameter's tolerance, if the model gives it.
     pub fn cost(&self, name: &str) -> Option<&Cost> {
         self.costs.iter().find(|(known, _)| known == name).map(|(_, cost)| cost)
     }
 
-    /// Whether some tolerance costs less where it is wider.
+    /// Whether some tolerance costs less if it is wider.
     pub fn is_priced(&self) -> bool {
         self.costs.iter().any(|(_, cost)| !matches!(cost, Cost::Fixed))
     }

@@ -76,7 +76,7 @@ fn choices(uncertain: &[(usize, f64, f64)]) -> Vec<Choice> {
     choices
 }
 
-/// Of each parameter, whether it is uncertain or free, or depends on one that is.
+/// Per parameter, whether it is uncertain or free, or depends on one that is.
 fn varies(parameters: &[Parameter], positions: &HashMap<&str, usize>, free: &HashSet<String>) -> Vec<bool> {
     parameters.iter().fold(Vec::new(), |mut varies: Vec<bool>, parameter| {
         varies.push(match &parameter.value {
@@ -130,7 +130,7 @@ fn evaluated(
     corners
 }
 
-/// Whether parameters have their nominal values among those of a corner: what follows from them has its nominal value,
+/// Whether the parameters `used` have their nominal values in `values`; values that follow from them are then nominal,
 /// too.
 fn is_as_nominal(corners: &[Corner], values: &[f64], used: &[usize]) -> bool {
     let Some(nominal) = corners.first().map(|corner| &corner.values) else { return false };

@@ -1,4 +1,4 @@
-//! `cost`: what an uncertain parameter's tolerance costs, for `mbint allocate`.
+//! `cost`: cost of an uncertain parameter's tolerance, for `mbint allocate`.
 
 use super::law::positive;
 use super::{ParameterDraft, interval};

@@ -97,7 +97,7 @@ pub struct Deviating<'f> {
     pub deviation: usize,
     /// Its value without the deviation.
     pub formula: &'f Formula,
-    /// That at the nominal values, where it is known.
+    /// That at the nominal values; `None` if unknown.
     pub nominal: Option<f64>,
 }
 

@@ -20,13 +20,13 @@ pub struct LawInterval {
     pub nominal: f64,
     pub lower: f64,
     pub upper: f64,
-    /// The same as the file has it, of which its laws are, where it is replaced.
+    /// Nominal value and interval of the file, which its laws refer to; `None` if they are not replaced.
     pub written: Option<[f64; 3]>,
 }
 
 impl LawInterval {
-    /// Where a value of the file's law comes to lie; its distance from the nominal value goes with the tolerance where
-    /// that is a `scaled` one.
+    /// Position of a value of the file's law; its distance from the nominal value scales with the tolerance for a
+    /// `scaled` law.
     fn moved(self, value: f64, scaled: bool) -> f64 {
         let Some([nominal, lower, upper]) = self.written else { return value };
         let (now, before) = match value < nominal {
@@ -37,7 +37,7 @@ impl LawInterval {
         self.nominal + scale * (value - nominal)
     }
 
-    /// The ends of the file's interval, and of this one where it is the file's.
+    /// The ends of the file's interval.
     fn ends(self) -> [f64; 2] {
         self.written.map_or([self.lower, self.upper], |[_, lower, upper]| [lower, upper])
     }

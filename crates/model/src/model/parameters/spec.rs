@@ -24,14 +24,14 @@ pub struct Spec {
     pub cost: Option<Node>,
     /// As the file has it, where value or deviation is replaced and a law or a cost of the file stays.
     pub before: Option<Box<Spec>>,
-    /// The deviation is said twice, as was reported: there is none to go on with.
+    /// The deviation is given twice, which has been reported; there is none to go on with.
     pub contradictory: bool,
     /// Value and deviation stand in one piece.
     in_one_piece: bool,
 }
 
 impl Spec {
-    /// Of which nothing but the unit is written.
+    /// Spec of which nothing but the unit is written.
     pub fn of_unit(unit: Option<Node>) -> Self {
         Self { unit, ..Self::default() }
     }
@@ -57,7 +57,7 @@ impl Spec {
         }
     }
 
-    /// Takes what the command line says instead: all of it, or the deviation alone.
+    /// Takes the specification of the command line instead: all of it, or the deviation alone.
     pub fn replace(&mut self, reader: &mut Reader, node: &Node) {
         let kept = Self {
             unit: self.unit.take(),
@@ -137,7 +137,7 @@ impl Spec {
         }
     }
 
-    /// What stands behind `tolerance`.
+    /// Reads the value of `tolerance`.
     fn tolerance(&mut self, reader: &mut Reader, node: &Node) {
         match tolerance::read(node) {
             Ok(Toleranced { value: Some(number), deviation: None }) => self.tolerance = Some(number),

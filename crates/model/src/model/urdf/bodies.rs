@@ -22,9 +22,9 @@ use crate::syntax::diagnostic::Diagnostic;
 pub struct Group {
     /// The first is nearest to the root.
     pub links: Vec<usize>,
-    /// Index of the robot's joint that leads to them; absent of the root's.
+    /// Index of the robot's joint that leads to them; `None` for the root's.
     pub behind: Option<usize>,
-    /// Index into the model's bodies; absent where it is left out.
+    /// Index into the model's bodies; `None` if it is omitted.
     pub body: Option<usize>,
 }
 

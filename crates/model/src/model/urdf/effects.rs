@@ -2,7 +2,7 @@
 //! and, where the model asks for it, stops at their limits.
 //!
 //! Damping is −d v, Coulomb friction −f v/√(v² + v₀²), each between the joint's two bodies, v the joint's velocity.
-//! They are called `JOINT.damping`, `JOINT.friction` and `JOINT.limit`, and can be left out by these names.
+//! They are called `JOINT.damping`, `JOINT.friction` and `JOINT.limit`, and can be omitted by these names.
 
 use crate::grammar::{FrictionMode, JointCoordinate, OnJoint, Quantity, Value};
 use symdiff::Formula;
@@ -22,14 +22,14 @@ use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use crate::syntax::yaml::Node;
 
-/// An effect that may yet be left out.
+/// An effect that may yet be omitted.
 pub struct RobotEffect<'r> {
     effect: Effect,
     /// Its numbers of the file.
     numbers: Vec<&'r Number>,
 }
 
-/// What acts in the joints.
+/// Reads the effects in the joints.
 pub fn read<'r>(
     reader: &mut Reader,
     source: &ParsedUrdf<'r>,
@@ -146,7 +146,7 @@ pub fn add(reader: &mut Reader, source: &ParsedUrdf, effects: Vec<RobotEffect>, 
         acting.extend(numbers.iter().map(|number| number.name.as_str()));
         reader.model.mechanism_mut().effects.push(effect);
     }
-    // Numbers of bodies and frames are used by them; these by the effects kept.
+    // Bodies and frames use their own numbers; the numbers of effects are used if the effects are not omitted.
     for number in source.robot.numbers().filter(|number| source.named.contains(&number.name)) {
         let of_effect = number.name.starts_with("joint.") && !number.name.contains(".origin.");
         let place = reader.model.parameters.iter().position(|parameter| parameter.name == number.name);

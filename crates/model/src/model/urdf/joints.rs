@@ -10,7 +10,7 @@ use crate::model::names::Reader;
 use crate::robots::algebra::{self, Value};
 use crate::robots::urdf::robot::UrdfJointType;
 
-/// Adds a joint that moves, or holds what the model asks for, with the frame it is at on its parent.
+/// Adds a joint that moves, or a fixed one whose reaction the model asks for, with its frame on its parent.
 pub fn joint(reader: &mut Reader, source: &ParsedUrdf, built: &Built, index: usize) -> Option<usize> {
     let joint = &source.robot.joints[index];
     let (parent, pose) = &built.places[joint.parent];
@@ -39,7 +39,7 @@ pub fn joint(reader: &mut Reader, source: &ParsedUrdf, built: &Built, index: usi
     Some(reader.model.joints.len() - 1)
 }
 
-/// Of length one.
+/// Scales a vector to length one.
 fn unit(axis: [f64; 3]) -> [f64; 3] {
     let length = axis.iter().map(|part| part * part).sum::<f64>().sqrt();
     axis.map(|part| part / length)

@@ -49,7 +49,7 @@ pub struct Urdf {
     robot: Robot,
     floating: bool,
     words: HashSet<String>,
-    /// What `bodies:` says of links.
+    /// Entries of `bodies:` for links.
     of_links: Vec<Entry>,
 }
 
@@ -63,7 +63,7 @@ pub struct DeclaredRobot {
 }
 
 impl Urdf {
-    /// Reads the file that the node names, beside the model's.
+    /// Reads the file that the node names, next to the model's.
     pub fn read(
         reader: &mut Reader,
         node: &Node,
@@ -138,7 +138,7 @@ impl Urdf {
 }
 
 impl DeclaredRobot {
-    /// Effects that are not left out, start values and, where the model has none, outputs; and whether masses stay
+    /// Adds effects that are not omitted, start values and, if the model has none, outputs; checks that masses stay
     /// positive. `limits` is the section of that name.
     pub fn finish(&self, reader: &mut Reader, left_out: &OmittedEffects, limits: Option<(&Node, Span)>, observe: bool) {
         let Urdf { robot, floating, words, .. } = &self.urdf;

@@ -1,5 +1,5 @@
-//! What the bodies, joints and start values of a robot are made from: its numbers, frames, and where its parts are in
-//! the model.
+//! Sources of a robot's bodies, joints and start values: its numbers, frames, and the locations of its parts in the
+//! model.
 
 use std::collections::HashSet;
 
@@ -48,11 +48,11 @@ impl ParsedUrdf<'_> {
 
 /// Where everything of the robot is in the model.
 pub struct Built {
-    /// Of each of the robot's joints that moves and is not left out: the model's.
+    /// Per joint of the robot, the model's joint; `None` if it does not move or is omitted.
     pub joints: Vec<Option<usize>>,
-    /// Of each link, its body and pose in it.
+    /// Per link, its body and its pose in it.
     pub places: Vec<(Option<usize>, Pose)>,
-    /// Of each link, its frame as others can name it; absent where it is left out.
+    /// Per link, its frame as others can name it; `None` if it is omitted.
     pub frames: Vec<Option<PointRef>>,
 }
 

@@ -13,7 +13,7 @@ use crate::robots::algebra::{self, Pose, Value};
 use crate::robots::number::Number;
 use crate::robots::urdf::robot::UrdfJointType;
 
-/// The zero configuration, for what the model says nothing of.
+/// Adds the zero configuration, for joints and bodies without a start value in the model.
 pub fn start(reader: &mut Reader, source: &ParsedUrdf, built: &Built) {
     let robot = source.robot;
     let mut poses = vec![Pose::identity(); robot.links.len()];
@@ -74,7 +74,7 @@ fn body_of(value: &StartValue) -> Option<usize> {
     }
 }
 
-/// Outputs where the model gives none: the joints' positions, and the place of a base that floats.
+/// Adds outputs if the model gives none: the joints' positions, and the positions of floating bodies.
 pub fn outputs(reader: &mut Reader, source: &ParsedUrdf, built: &Built) {
     let mut push = |name: String, text: String, dimension: Dimension| {
         let formula = formula(reader, &Value::Text(text));
