@@ -1,4 +1,4 @@
-//! `analysis:`, `initial: equilibrium`, and what cannot be asked then.
+//! `analysis:`, `initial: equilibrium`, and the requests that they exclude.
 
 use super::description::{
     Analysis, Description, Formulation, Joint, LinearisedAt, ModesRequest, ResponseRequest, Stepping,
@@ -84,7 +84,7 @@ pub fn read(reader: &mut Reader, fields: &Fields) {
     }
 }
 
-/// The keys of `modes`; reports the section where it is out of place.
+/// The keys of `modes`; reports the section if it is misplaced.
 fn section_of_modes<'n>(reader: &mut Reader, fields: &Fields<'n>) -> Option<Fields<'n>> {
     let node = fields.get("modes")?;
     if !matches!(reader.model.analysis, Analysis::Modes(_)) {
@@ -182,7 +182,7 @@ fn known_output(reader: &mut Reader, node: &Node) -> Option<(String, Option<Dime
     None
 }
 
-/// The values by name of `initial`, where it has some.
+/// The values by name of `initial`, if it has some.
 pub fn values_of_start<'n>(fields: &Fields<'n>) -> Option<&'n Node> {
     fields.get("initial").filter(|node| node.scalar().is_none_or(|scalar| scalar.is_null()))
 }
@@ -300,7 +300,7 @@ pub fn check_outputs(reader: &mut Reader, entries: &[Entry]) {
     }
 }
 
-/// Reports reduced outputs and requirements that name what kinematics does not know.
+/// Reports reduced outputs and requirements that name quantities unknown to kinematics.
 fn check_reduced_without_forces(reader: &mut Reader, [outputs, requirements]: [&[Entry]; 2]) {
     let model = &reader.model;
     let reduced = model.reduced.iter().map(|own| (&own.name, &own.sources, outputs));

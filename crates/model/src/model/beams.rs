@@ -41,7 +41,7 @@ pub fn nodes(beam: &str, elements: usize) -> impl Iterator<Item = String> {
     })
 }
 
-/// What a beam has in space alone.
+/// Keys that a beam has in space alone.
 const OF_SPACE: [&str; 2] = ["bending_stiffness_y", "torsional_stiffness"];
 
 /// Reads a beam whose nodes were declared as the bodies from `first` on.
@@ -120,7 +120,7 @@ pub fn read(reader: &mut Reader, entry: &Entry, first: usize, elements: usize) {
 }
 
 impl Description {
-    /// Number of elements of a beam; `None` where there is none of that name.
+    /// Number of elements of a beam; `None` if there is no beam of that name.
     pub(super) fn elements_of(&self, beam: &str) -> Option<usize> {
         self.beams.iter().find(|known| known.name == beam).map(|beam| beam.elements)
     }

@@ -1,4 +1,4 @@
-//! `black_box:`, and what a model that has one cannot say.
+//! `black_box:`, and the sections that a model with it cannot have.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

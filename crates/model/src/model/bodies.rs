@@ -97,7 +97,7 @@ fn ground(reader: &mut Reader, entry: &Entry) {
     shapes(reader, &fields, 0);
 }
 
-/// What a body looks like: one shape, or several.
+/// Reads the shapes of a body: one, or several.
 fn shapes(reader: &mut Reader, fields: &Fields, body: usize) {
     let Some(node) = fields.get("shape") else { return };
     let at = fields.key_span("shape");
@@ -121,7 +121,7 @@ fn body(reader: &mut Reader, entry: &Entry, index: usize) {
         let needed = needed && has_forces;
         let node = if needed { reader.required(&fields, key) } else { fields.get(key) }?;
         let formula = reader.formula(node, Context::Constant, dimension)?;
-        // A mass of 0 has none: joints or springs have to determine where it is.
+        // A mass of 0 is allowed: joints or springs have to determine where the body is.
         if needed && formula.as_number() != Some(0.0) {
             reader.require(node, &formula, |value| value > 0.0, "must be positive");
         } else {
@@ -153,7 +153,7 @@ fn body(reader: &mut Reader, entry: &Entry, index: usize) {
     body.prescribed_orientation = prescribed_orientation;
 }
 
-/// A body without coordinates moves as `held` says, or not at all.
+/// Reports a body without coordinates of which no value in `held` depends on t.
 fn needs_motion(reader: &mut Reader, node: &Node, prescribed: &[(Coordinate, Formula)]) {
     let moves = prescribed.iter().any(|(_, value)| value.names().any(|(name, _)| name == "t"));
     if !moves && matches!(&node.value, Value::Sequence(items) if items.is_empty()) {

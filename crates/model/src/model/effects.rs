@@ -5,7 +5,7 @@ use super::names::Reader;
 use crate::elements::effects::EffectKind;
 use crate::syntax::yaml::Entry;
 
-/// Reads the effects. A formula may refer to what its own effect and those before it measure.
+/// Reads the effects. A formula may refer to the sensors of its own effect and of those before it.
 pub fn read(reader: &mut Reader, entries: &[Entry]) {
     for entry in entries {
         reader.name(entry, "an effect");

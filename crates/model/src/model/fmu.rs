@@ -100,7 +100,7 @@ pub fn check_parameters(reader: &mut Reader, fields: &Fields, entries: &[Entry])
     }
 }
 
-/// How it moves on: as asked, or by co-simulation where it has that.
+/// Interface of the unit: the one asked for, or co-simulation if the unit supports it.
 fn interface(reader: &mut Reader, fields: &Fields, unit: &Unit, file: &Node) -> Option<Interface> {
     let has = |interface: Interface| unit.library(interface).is_some();
     let there: Vec<Interface> = INTERFACES.iter().map(|(_, own)| *own).filter(|own| has(*own)).collect();

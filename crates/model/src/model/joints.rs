@@ -14,13 +14,13 @@ use crate::syntax::yaml::{Entry, Value};
 pub fn declare(reader: &mut Reader, entries: &[Entry]) {
     for entry in entries {
         reader.name(entry, "a joint");
-        // The kind is put in its place by `read`.
+        // `read` replaces the kind.
         let kind = Equation { left: Formula::number(0.0), right: Formula::number(0.0) };
         reader.model.mechanism_mut().joints.push(Joint::new(entry.key.clone(), kind.into()));
     }
 }
 
-/// Reads the joints that were declared; what refers to joints comes after the joints.
+/// Reads the joints that were declared; those that refer to joints come after the others.
 pub fn read(reader: &mut Reader, entries: &[Entry]) {
     let couples = |entry: &Entry| match &entry.value.value {
         Value::Mapping(kinds) => kinds.iter().any(|kind| JointKind::couples(&kind.key)),

@@ -39,7 +39,7 @@ pub fn load(path: &Path, overrides: &[Override]) -> Result<Description, Diagnost
     description.ok_or(diagnostics)
 }
 
-/// Reads a model from text; `name` is what diagnostics call it.
+/// Reads a model from text; `name` is its name in diagnostics.
 ///
 /// # Errors
 /// Everything that is wrong with the text.
@@ -77,17 +77,17 @@ pub fn read(path: &Path, overrides: &[Override]) -> Reading {
     read_rooted(path, Changes::of(overrides), None)
 }
 
-/// What replaces parts of a model's text.
+/// Replacements for parts of a model's text.
 #[derive(Clone, Copy, Debug)]
 pub struct Changes<'c> {
     /// Values of parameters.
     pub overrides: &'c [Override],
-    /// Outputs, by names and formulas; `None` where they are the model's own.
+    /// Outputs, by names and formulas; `None` for the model's own.
     pub outputs: Option<&'c [(String, String)]>,
 }
 
 impl<'c> Changes<'c> {
-    /// Of parameters alone.
+    /// Changes of parameters alone.
     pub fn of(overrides: &'c [Override]) -> Self {
         Self { overrides, outputs: None }
     }
@@ -214,7 +214,7 @@ pub(super) fn read_from(origin: ModelOrigin, text: &str, changes: Changes) -> Re
 
 /// Where a model comes from.
 pub(super) struct ModelOrigin<'o> {
-    /// What diagnostics call it.
+    /// Name in diagnostics.
     name: &'o str,
     /// Files that it may name.
     files: AllowedFolders,
@@ -227,7 +227,7 @@ pub(super) struct ModelOrigin<'o> {
 }
 
 impl<'o> ModelOrigin<'o> {
-    /// Of a text, whose dimensions and zones are not read yet.
+    /// Origin of a text, whose dimensions and zones are not read yet.
     pub(super) fn of(name: &'o str, files: AllowedFolders, mentions: Option<&'o Notes>) -> Self {
         Self { name, files, chains: Vec::new(), zones: Vec::new(), mentions }
     }
@@ -247,8 +247,7 @@ impl<'o> ModelOrigin<'o> {
     }
 }
 
-/// Reads every section, what others refer to before what refers to it; the warnings are of parameters that are used
-/// nowhere.
+/// Reads every section, each before those that refer to it; the warnings are of parameters that are used nowhere.
 fn describe(
     origin: &ModelOrigin,
     variant: &Variant,

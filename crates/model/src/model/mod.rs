@@ -1,7 +1,7 @@
-//! What a file may say: reading, checking, and the typed [`Description`].
+//! Contents of a model file: reading, checking, and the typed [`Description`].
 //!
 //! `load` goes text → tree (`yaml`) → sections (one file each) → [`Description`]. Reading goes on after an error:
-//! `Diagnostics` collects them all, each with its place.
+//! `Diagnostics` collects them all, each with its location.
 
 mod definitions;
 mod description;

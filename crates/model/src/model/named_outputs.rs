@@ -9,8 +9,8 @@ use crate::syntax::codes::Code;
 use crate::syntax::suggest::clip;
 use crate::syntax::yaml::Entry;
 
-/// The formula of one of all outputs, with those of outputs above in place of their names. A name of the model is
-/// unchanged. Reports an output that stands further down, and a formula that gets too long.
+/// The formula of one of all outputs, with the formulas of outputs above substituted for their names. A name of the
+/// model is unchanged. Reports an output that stands further down, and a formula that gets too long.
 pub(super) fn with_outputs(reader: &mut Reader, entry: &Entry, all: &[Entry], formula: Formula) -> Option<Formula> {
     let index = |name: &str| all.iter().position(|entry| entry.key == name);
     let own = index(&entry.key);

@@ -11,7 +11,7 @@ use crate::grammar::{self, FrictionMode, JointCoordinate, MeshKind, PointRef, Se
 pub type Reader<'d> = grammar::reader::Reader<'d, Description>;
 
 impl Description {
-    /// What a name in a formula stands for; `None` where it stands for nothing.
+    /// Symbol that a name in a formula stands for; `None` if there is none.
     pub fn symbol(&self, name: &str) -> Option<Symbol> {
         grammar::names::symbol(self, name)
     }

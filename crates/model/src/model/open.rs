@@ -23,7 +23,7 @@ pub fn read_open(path: &Path, open: &OpenTexts, root: Option<&Path>) -> Opened {
     };
     let (name, notes) = (shown(path), Notes::default());
     let files = AllowedFolders::of(path, root).with_open(open);
-    // The text of the model of a robot is nobody's: names have no places in it.
+    // The model of a robot alone has no text of its own: names have no locations in it.
     let reading = match robot_alone(path) {
         Some(model) => read_from(ModelOrigin::of(&name, files, None), &model, Changes::of(&[])),
         None => read_from(ModelOrigin::of(&name, files, Some(&notes)), text, Changes::of(&[])),

@@ -5,7 +5,7 @@ use crate::syntax::diagnostic::Diagnostics;
 use crate::syntax::suggest::{self, clip};
 use crate::syntax::{Code, Coded};
 
-/// What reading a model gave: both may be there when there are only warnings.
+/// Result of reading a model: both may be there if there are only warnings.
 #[derive(Clone, Debug)]
 pub struct Reading {
     /// The model itself, unless it or a scene of it has errors.
@@ -31,7 +31,7 @@ pub struct Scene {
 pub struct UnknownScene {
     /// As it was asked for.
     name: String,
-    /// What would be right.
+    /// Suggested correction.
     help: String,
 }
 

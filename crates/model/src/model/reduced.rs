@@ -288,7 +288,7 @@ impl Comparison {
     }
 }
 
-/// The only `<`, `<=`, `>` or `>=` of a text: its place, its length, and whether it is one of the first two.
+/// The only `<`, `<=`, `>` or `>=` of a text: its index, its length, and whether it is one of the first two.
 pub(super) fn relation(reader: &mut Reader, node: &Node) -> Option<(usize, usize, bool)> {
     let text = &reader.scalar(node, "a comparison")?.text;
     let signs: Vec<usize> =

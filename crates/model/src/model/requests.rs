@@ -90,7 +90,7 @@ fn start_value(reader: &mut Reader, entry: &Entry, velocities: bool) -> Option<S
     }
 }
 
-/// What a start value is of; reports a name that stands for nothing.
+/// Symbol that a start value belongs to; reports a name that stands for nothing.
 fn start_symbol(reader: &mut Reader, entry: &Entry) -> Option<Symbol> {
     let name = entry.key.as_str();
     reader.mentions(None, name, &entry.key_span);

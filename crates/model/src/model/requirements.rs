@@ -186,7 +186,7 @@ fn required(
         let mut note = |of: &str, sign: f64, is_upper: bool| {
             limits.extend(constant.map(|value| Limit { of: of.to_owned(), value: sign * value, is_upper }));
         };
-        // A magnitude has a kink where it is zero, its two sides have none.
+        // A magnitude has a kink at zero, its two sides have none.
         match own.formula.argument_of(Unary::Abs).filter(|_| is_upper) {
             Some(inside) => {
                 slacks.push(limit.formula.combined(Binary::Sub, &inside));

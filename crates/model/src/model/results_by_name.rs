@@ -32,7 +32,7 @@ pub(super) struct Numbers {
     pub dimension: fn(&Description, &str) -> Option<Option<Dimension>>,
     /// Said of other names.
     pub refusal: &'static str,
-    /// What would be right.
+    /// Suggested correction.
     pub help: &'static str,
 }
 
@@ -94,7 +94,7 @@ fn of_analysis(model: &Description, name: &str) -> Option<Option<Dimension>> {
     }
 }
 
-/// Whether formulas of an analysis name its results, and outputs by their names, in place of the motion.
+/// Whether formulas of an analysis name its results, and outputs by their names, instead of the motion.
 pub(super) fn are_named<'t>(model: &Description, mut names: impl Iterator<Item = &'t str>) -> bool {
     match model.analysis {
         Analysis::Modes(_) => true,
@@ -103,7 +103,7 @@ pub(super) fn are_named<'t>(model: &Description, mut names: impl Iterator<Item =
     }
 }
 
-/// The unit in which people see a margin of results, where it is not that of their dimension.
+/// The unit in which people see a margin of results, if it is not that of their dimension.
 pub(super) fn unit<'t>(mut names: impl Iterator<Item = &'t str>) -> Option<&'static str> {
     names.any(|name| name.starts_with("mode") && name.ends_with(".frequency")).then_some("Hz")
 }

@@ -1,4 +1,4 @@
-//! By what a motion is integrated: the scheme, and the levels that it is extrapolated over.
+//! Integration of a motion: the scheme, and the levels that it is extrapolated over.
 
 use super::description::SchemeChoice;
 use super::names::Reader;

@@ -33,7 +33,7 @@ pub(super) fn title(reader: &mut Reader, fields: &Fields, scene: Option<&str>) {
     }
 }
 
-/// Reports what a model does not say; one with a robot has bodies and outputs.
+/// Reports sections that a model lacks; one with a robot has bodies and outputs.
 pub(super) fn missing_sections(
     reader: &mut Reader,
     fields: &Fields,

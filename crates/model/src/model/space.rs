@@ -1,4 +1,4 @@
-//! Whether a model stays in the plane: what the file says, or whether anything in it leaves the plane.
+//! Whether a model stays in the plane: as the file says, or else by whether anything in it leaves the plane.
 //!
 //! Decided before anything else is read, on the text alone, because it says which coordinates a body has.
 
@@ -14,7 +14,7 @@ use crate::syntax::yaml::{Entry, Node, Value};
 /// Parts of names at the start that only bodies in space have.
 const SPATIAL_STARTS: [&str; 5] = ["z", "vz", "orientation", "omega", "omega_body"];
 
-/// Of a body.
+/// Name, in messages, of a body's prescribed coordinates.
 const HELD: &str = "what is held";
 
 /// Reads `space:`, or decides.

@@ -145,7 +145,7 @@ pub fn is_sampled(effect: &Effect) -> bool {
     effect.kind.states().iter().any(|state| state.period.is_some())
 }
 
-/// Reports states where nothing moves in time, and modes of what jumps.
+/// Reports states in kinematics, and sampled effects in modes.
 pub fn check(reader: &mut Reader, fields: &Fields, effects: &[Entry]) {
     let analysis = reader.model.analysis;
     let sampled: Vec<&Effect> = reader.model.effects.iter().filter(|own| is_sampled(own)).collect();

@@ -21,7 +21,7 @@ const QUANTILES: [f64; 3] = [0.00135, 0.5, 0.99865];
 /// Samples that can be asked for.
 const SAMPLES: std::ops::RangeInclusive<usize> = 1 << 10..=1 << 24;
 
-/// Reads the section, and completes what parameters say of their laws.
+/// Reads the section, and completes the laws that parameters give.
 pub fn read(reader: &mut Reader, section: Option<(&Node, Span)>) {
     (reader.model.statistics.quantiles, reader.model.statistics.seed) = (QUANTILES.to_vec(), TUNING.seed);
     // A stack is asked for its distribution, too.

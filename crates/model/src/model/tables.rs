@@ -14,7 +14,7 @@ use crate::syntax::suggest::{self, clip};
 use crate::syntax::table::{self, Cell, Line};
 use crate::syntax::yaml::{Entry, Node, Value};
 
-/// A value of a table and its place.
+/// A value of a table and its location.
 type Number = (f64, Span);
 
 /// Reads the tables.
@@ -127,7 +127,7 @@ fn listed(reader: &mut Reader, node: &Node) -> Option<Vec<[Number; 2]>> {
         .collect()
 }
 
-/// Two columns of a file. Errors in it have their places in it.
+/// Two columns of a file. Errors in it have their locations in it.
 fn from_file(reader: &mut Reader, fields: &Fields, node: &Node) -> Option<Vec<[Number; 2]>> {
     let (start, text) = reader.file(node)?;
     let table = table::Table::read(&text);

@@ -1,4 +1,5 @@
-//! Reactions of bearings that teeth push on: refused, for a ratio does not tell where teeth touch, nor at which angle.
+//! Reactions of bearings that teeth push on: refused, since a ratio determines neither where teeth touch nor at which
+//! angle.
 
 use std::collections::{BTreeMap, HashSet};
 

@@ -348,7 +348,7 @@ fn what_leaves_the_plane_makes_a_model_spatial() {
     }
 }
 
-/// Names are looked for among all, and formulas checked at the ends of every interval: neither is to take minutes.
+/// Names are searched for among all, and formulas checked at the ends of every interval: neither may take minutes.
 #[test]
 fn more_parameters_than_anyone_has_are_refused() {
     let with = |count: usize, value: &str| {

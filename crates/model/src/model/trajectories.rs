@@ -156,7 +156,7 @@ fn ascending(reader: &mut Reader, points: &[Waypoint], nodes: &[Node]) -> Option
     Some(())
 }
 
-/// Beginning and end of a move, s, at every corner of the parameters, and what the corner is called.
+/// Beginning and end of a move, s, at every corner of the parameters, and the corner's label.
 fn moves<'r>(reader: &'r Reader, pair: &'r [Waypoint]) -> impl Iterator<Item = ([f64; 2], String)> + 'r {
     (0..reader.corners.len()).filter_map(|corner| {
         let times = [reader.evaluate(&pair[0].time, corner)?, reader.evaluate(&pair[1].time, corner)?];

@@ -47,7 +47,7 @@ tuning! {
         frequencies: usize = 60, moves "results of responses";
         /// Most frequencies of a response.
         most_frequencies: usize = 2000, moves "which models are refused";
-        /// Mass of a link of a URDF that moves, has none and cannot be left out, kg.
+        /// Mass of a moving link of a URDF that has none and cannot be omitted, kg.
         link_mass: f64 = 1e-3, moves "bounds of robots with such links";
         /// Its moments of inertia, kg m².
         link_inertia: f64 = 1e-6, moves "bounds of robots with such links";

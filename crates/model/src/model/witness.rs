@@ -72,10 +72,10 @@ pub enum WitnessError {
 }
 
 impl Witness {
-    /// Of functions by their points, and of values of parameters, SI.
+    /// Witness of functions by their points, and of values of parameters, SI.
     ///
     /// # Errors
-    /// Where points do not make a function.
+    /// Points that do not make a function.
     pub fn new<'p>(
         functions: impl IntoIterator<Item = (&'p str, &'p [(f64, f64)])>,
         parameters: Vec<(String, f64)>,

@@ -15,7 +15,7 @@ pub(super) fn check(reader: &mut Reader) {
     }
 }
 
-/// Fault of a zone's size, where it has one.
+/// Fault of a zone's size; `None` if it has none.
 fn wrong(reader: &Reader, zone: &Zone) -> Option<String> {
     let radius = format!("{}_{RADIUS}", zone.name);
     let index = reader.model.parameters.iter().position(|parameter| parameter.name == radius)?;

@@ -15,7 +15,7 @@ use crate::syntax::yaml::{Entry, Node};
 /// Keys of which an excitation has one at most.
 const CLASSES: [&str; 5] = ["rate", "held", "mean", "energy", "band"];
 
-/// An example of limits and of what stands for them.
+/// Example of limits, and of their alternatives.
 const EXAMPLE: &str =
     "give limits of its value, `within: ± 5 N`, or of its `rate` or `energy`, or a spectrum, `random`";
 
