@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 
 use symdiff::{Formula, math};
 
-/// A number, or the text of a formula of parameters, in parentheses where it has an operator.
+/// A number, or the text of a formula of parameters, in parentheses if it has an operator.
 #[derive(Clone, Debug)]
 pub enum Value {
     Number(f64),
@@ -39,7 +39,7 @@ impl Value {
         }
     }
 
-    /// The formula; too deeply nested text is none.
+    /// The formula; `None` if the text is too deeply nested.
     pub fn formula(&self) -> Option<Formula> {
         match self {
             Self::Number(value) => Some(Formula::number(*value)),
@@ -180,7 +180,7 @@ pub fn rotate_tensor(q: &Quaternion, tensor: &[Vector; 3]) -> [Vector; 3] {
     std::array::from_fn(|i| std::array::from_fn(|k| sum(&[0, 1, 2].map(|j| mul(&half[i][j], &r[k][j])))))
 }
 
-/// Of a point mass at d: m (d² 1 − d dᵀ).
+/// Inertia of a point mass at d: m (d² 1 − d dᵀ).
 pub fn steiner(mass: &Value, d: &Vector) -> [Vector; 3] {
     let square = sum(&[0, 1, 2].map(|i| mul(&d[i], &d[i])));
     std::array::from_fn(|i| {

@@ -9,12 +9,12 @@ use std::ops::Range;
 /// A part with neither elements nor attributes, from its beginning to its end.
 pub const SKIPPED: [(&str, &str); 3] = [("<!--", "-->"), ("<![CDATA[", "]]>"), ("<?", "?>")];
 
-/// Finds the first place at which a text exceeds a limit, and says which.
+/// Finds the first location at which a text exceeds a limit, and says which.
 ///
 /// A text that is not XML passes: the parser reports it.
 ///
 /// # Errors
-/// The place of the element, and the message.
+/// The location of the element, and the message.
 pub fn check(text: &str) -> Result<(), (Range<usize>, String)> {
     let (mut levels, mut elements, mut attributes) = (0_usize, 0, 0);
     let mut at = 0;

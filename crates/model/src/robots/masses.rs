@@ -25,7 +25,7 @@ pub fn center(parts: &[MassPart], mass: &Value) -> Vector {
     }
 }
 
-/// Of all parts about their centre of mass.
+/// Inertia of all parts about their centre of mass.
 pub fn inertia(parts: &[MassPart], center: &Vector) -> [Vector; 3] {
     let steiner = |part: &MassPart| {
         let d: Vector = std::array::from_fn(|i| algebra::sub(&part.center[i], &center[i]));

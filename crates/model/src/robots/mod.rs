@@ -1,4 +1,4 @@
-//! Formats of robots' files: text → typed robot with the place of every number. Nothing here knows a model
+//! Formats of robots' files: text → typed robot with the location of every number. Nothing here knows a model
 //! (decision 0156).
 //!
 //! Both formats share XML with limits of size, numbers that may become parameters, frames and masses.

@@ -13,6 +13,6 @@ pub struct Number {
     pub unit: &'static str,
     /// Where it stands, or where it would.
     pub span: Span,
-    /// What an attribute of mbint's own says of it, and where.
+    /// Text of mbint's own attribute for it, and its location.
     pub uncertain: Option<(String, Span)>,
 }

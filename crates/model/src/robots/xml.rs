@@ -1,4 +1,4 @@
-//! Text → XML tree with places; what the parser finds, in words.
+//! Text → XML tree with locations; the parser's findings, in words.
 
 use std::ops::Range;
 
@@ -15,13 +15,13 @@ use crate::syntax::suggest::clip;
 /// Namespace of mbint's own attributes.
 pub const NAMESPACE: &str = "urn:mbint";
 
-/// What to do with xacro.
+/// Help for a file with xacro.
 pub const EXPAND: &str = "expand it first: `xacro robot.urdf.xacro > robot.urdf`";
 
 pub type Element<'a, 'i> = Node<'a, 'i>;
 
-/// Parses the text of a format (`a URDF`), which begins at offset `start` of the sources. `held` keeps the text that is
-/// parsed where it is another: one in which all prefixes are declared.
+/// Parses the text of a format (`a URDF`), which begins at offset `start` of the sources. `held` stores the text that
+/// is parsed if it is another: one in which all prefixes are declared.
 pub fn parse<'t>(
     text: &'t str,
     held: &'t mut String,
@@ -57,7 +57,7 @@ fn document_of(text: &str) -> Result<Document<'_>, roxmltree::Error> {
     Document::parse_with_options(text, options)
 }
 
-/// What the parser says, with what would be right where that is known.
+/// Diagnostic of the parser's error, with a suggested correction if one is known.
 fn syntax_error(text: &str, places: XmlSpans, format: &str, error: &roxmltree::Error) -> Diagnostic {
     let at = error.pos();
     let line = text.split_inclusive('\n').take(at.row.saturating_sub(1) as usize).map(str::len).sum::<usize>();
@@ -80,7 +80,7 @@ fn syntax_error(text: &str, places: XmlSpans, format: &str, error: &roxmltree::E
         roxmltree::Error::UnexpectedEndOfStream => ("the file ends in the middle".to_owned(), None),
         roxmltree::Error::NodesLimitReached => ("the file has too many elements".to_owned(), None),
         error => {
-            // The place is shown beside it.
+            // The location is shown next to it.
             let message = error.to_string();
             let message = message.rsplit_once(" at ").map_or(message.as_str(), |(message, _)| message);
             (format!("this is not XML: {}", clip(message)), None)
@@ -108,7 +108,7 @@ impl XmlSpans {
         in_file(range.start)..in_file(range.end)
     }
 
-    /// The element's start tag: the place of an error of the whole element.
+    /// The element's start tag: the location of an error of the whole element.
     pub fn tag(self, element: Element) -> Span {
         let range = element.range();
         let text = &element.document().input_text()[range.clone()];

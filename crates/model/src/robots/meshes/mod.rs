@@ -12,7 +12,7 @@ pub use crate::syntax::mesh_file::Triangle;
 /// Names of files that are read end with one of these.
 pub const FORMATS: [&str; 3] = ["stl", "obj", "msh"];
 
-/// The triangles of a file, counterclockwise seen from outside; none where it is not of the format that its name ends
+/// The triangles of a file, counterclockwise seen from outside; `None` if it is not of the format that its name ends
 /// with.
 pub fn triangles(path: &Path, bytes: &[u8]) -> Option<Vec<Triangle>> {
     match path.extension()?.to_ascii_lowercase().to_str()? {

@@ -1,11 +1,11 @@
-//! What triangles enclose, by tetrahedra from each to a common apex:
+//! Volume, centre and inertia of the solid that triangles enclose, by tetrahedra from each to a common apex:
 //!
 //! ```text
 //! V = Σ Vᵢ,   Vᵢ = a·(b × c)/6,   ∫ x dV = Σ Vᵢ (a + b + c)/4
 //! ∫ x xᵀ dV = Σ Vᵢ/20 (a aᵀ + b bᵀ + c cᵀ + s sᵀ),   s = a + b + c
 //! ```
 //!
-//! Exact for a closed surface, wherever the apex is. Of a surface, areas take the place of volumes:
+//! Exact for a closed surface, wherever the apex is. For a surface, areas replace volumes:
 //! ∫ x xᵀ dA = Σ Aᵢ/12 (…).
 
 use std::collections::HashMap;
@@ -35,9 +35,9 @@ pub struct SolidMeasures {
 /// Edges that a closed surface does not have.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Faults {
-    /// Of one triangle only.
+    /// Edges of one triangle only.
     pub open: usize,
-    /// Along which neighbours run the same way.
+    /// Edges along which neighbours run the same way.
     pub turned: usize,
 }
 
@@ -58,7 +58,7 @@ fn area([a, b, c]: Triangle) -> f64 {
     dot(normal, normal).sqrt() / 2.0
 }
 
-/// What triangles make up. The size of a wrong mesh may be zero, negative or no number.
+/// Measures of the body that triangles make up. The size of a wrong mesh may be zero, negative or not a number.
 pub fn measure(triangles: &[Triangle], way: Way) -> SolidMeasures {
     let middle = middle(triangles);
     let share = |[a, b, c]: Triangle| match way {
@@ -67,7 +67,7 @@ pub fn measure(triangles: &[Triangle], way: Way) -> SolidMeasures {
         Way::Shell => area([a, b, c]),
     };
     let seen_from = |apex: [f64; 3]| triangles.iter().map(move |triangle| triangle.map(|corner| less(corner, apex)));
-    // Corners of a piece beside the apex weigh as much as it.
+    // The apex counts as a corner of a tetrahedron; a triangle of a shell has its own three corners only.
     let corners = if way == Way::Shell { 3.0 } else { 4.0 };
     let (mut size, mut moment) = (0.0, [0.0; 3]);
     for triangle in seen_from(middle) {
@@ -106,7 +106,7 @@ fn middle(triangles: &[Triangle]) -> [f64; 3] {
     if whole > 0.0 { moment.map(|part| part / whole) } else { [0.0; 3] }
 }
 
-/// What keeps triangles from being a closed surface; corners at the same place are one.
+/// Faults that keep triangles from being a closed surface; equal corners are one.
 pub fn faults(triangles: &[Triangle]) -> Faults {
     let mut places: HashMap<[u64; 3], usize> = HashMap::new();
     let mut place = |corner: [f64; 3]| {

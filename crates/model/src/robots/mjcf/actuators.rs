@@ -95,7 +95,7 @@ impl CouplingReader<'_, '_, '_> {
         })
     }
 
-    /// The damping ratio of a law that holds a position: `dampratio`, or the third bias of a general law where it is
+    /// The damping ratio of a law that holds a position: `dampratio`, or the third bias of a general law if that is
     /// positive.
     fn damping_ratio(
         &mut self,
@@ -127,7 +127,7 @@ impl CouplingReader<'_, '_, '_> {
         }
     }
 
-    /// What keeps the actuator's activation from its command at once: nothing, an integrator or a lag.
+    /// Memory between the actuator's command and its activation: none, an integrator or a lag.
     fn memory(&mut self, item: &Item, get: &dyn Fn(&Values, &str) -> Option<Attribute>) -> Option<Option<Memory>> {
         let values = &mut *self.values;
         let first = |values: &mut Values, key: &str, default: f64| numbers(values, get, key, default)[0];

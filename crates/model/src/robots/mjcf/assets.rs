@@ -17,16 +17,16 @@ pub struct Meshes<'i> {
     /// Whether only the last part of a file's name counts.
     pub strips: bool,
     pub by_name: BTreeMap<String, &'i Item>,
-    /// Those read; none where it cannot be.
+    /// Those read; `None` for one that cannot be read.
     pub known: HashMap<String, Option<SolidMeasures>>,
-    /// Names of meshes that enclose nothing for certain, or less than their tetrahedra, with the place of the first and
-    /// why.
+    /// Meshes with an open surface, and those that enclose less than their tetrahedra: location and description of
+    /// each.
     pub open: Vec<(Span, String)>,
     pub folded: Vec<(Span, String)>,
 }
 
 impl<'i> Meshes<'i> {
-    /// Of a document in a folder, none of them read.
+    /// Meshes of a document in a folder, none of them read.
     pub fn new(root: &'i Item, files: &'i AllowedFolders, folder: &Path) -> Self {
         let items = root.of("asset").flat_map(|asset| asset.of("mesh"));
         let by_name = items.filter_map(|item| Some((name_of(item)?, item))).collect();

@@ -1,5 +1,5 @@
-//! `<replicate>` and `<attach>`: copies of what stands in a body, and parts of other models, whose names, classes and
-//! settings are their own.
+//! `<replicate>` and `<attach>`: copies of the elements in a body, and parts of other models, with names, classes and
+//! settings of their own.
 
 use std::path::Path;
 

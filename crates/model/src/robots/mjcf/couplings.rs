@@ -12,8 +12,8 @@ use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::suggest::{self, clip};
 
-/// Reads what couples and drives the joints of a robot whose bodies are read. Of an attached model, whose names have a
-/// prefix, only what speaks of nothing that is not attached.
+/// Reads the elements that couple and drive the joints of a robot whose bodies are read. Of an attached model, whose
+/// names have a prefix, only those that name nothing outside the attached part.
 pub fn read(root: &Item, values: &mut Values, robot: &mut Robot, names: &Names, attached: Option<&str>) {
     let taken = robot.equalities.iter().map(|own| &own.name).chain(robot.tendons.iter().map(|own| &own.name));
     let taken = taken.chain(robot.actuators.iter().map(|own| &own.name)).cloned().collect();
@@ -74,7 +74,7 @@ impl CouplingReader<'_, '_, '_> {
         item.attributes.iter().all(has) && item.items.iter().all(|inner| self.is_attached(inner))
     }
 
-    /// What an attribute names.
+    /// Finds the object that an attribute names; reports an unknown name.
     fn found<T: Copy>(&mut self, attribute: &Attribute, what: &str, known: &HashMap<String, T>) -> Option<T> {
         let found = known.get(&format!("{}{}", self.prefix, attribute.value)).copied();
         if found.is_none() {
@@ -184,7 +184,7 @@ impl CouplingReader<'_, '_, '_> {
         Some(Some([first?, second?]))
     }
 
-    /// Two bodies, the second the world where it is not given.
+    /// Two bodies, the second the world if it is not given.
     fn bodies(&mut self, item: &Item) -> Option<[usize; 2]> {
         let Some(first) = item.get("body1") else {
             self.needs(item, "`body1`, or `site1` and `site2`");

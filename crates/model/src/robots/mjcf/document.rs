@@ -1,4 +1,4 @@
-//! MJCF text → elements with places, included files in their places, every name checked against
+//! MJCF text → elements with locations, included files in place of their `<include>`, every name checked against
 //! [`table`](super::table).
 
 use std::path::{Path, PathBuf};
@@ -16,7 +16,7 @@ use crate::syntax::within::AllowedFolders;
 /// An element.
 pub struct Item {
     pub tag: String,
-    /// Of its start tag.
+    /// Span of its start tag.
     pub span: Span,
     pub attributes: Vec<Attribute>,
     pub items: Vec<Item>,
@@ -25,7 +25,7 @@ pub struct Item {
 pub struct Attribute {
     pub name: String,
     pub value: String,
-    /// Of the value.
+    /// Span of the value.
     pub span: Span,
     /// Whether it is mbint's own.
     pub own: bool,
@@ -60,7 +60,7 @@ pub fn read(path: &Path, at: Option<Span>, files: &AllowedFolders, diagnostics: 
 struct Reader<'d> {
     diagnostics: &'d mut Diagnostics,
     within: &'d AllowedFolders,
-    /// Of the outermost file: names are from it.
+    /// Folder of the outermost file: names are from it.
     folder: PathBuf,
     /// Files that include the next.
     open: Vec<PathBuf>,
@@ -236,7 +236,7 @@ impl Reader<'_> {
     }
 }
 
-/// Whether a value says what another does; of numbers, whether all of them are.
+/// Whether a value means the same as another; of numbers, whether all of them do.
 fn is_same(value: &str, harmless: &str) -> bool {
     let number = |text: &str| text.parse::<f64>().ok();
     match harmless.split_whitespace().next().and_then(number) {

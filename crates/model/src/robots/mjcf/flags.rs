@@ -1,6 +1,6 @@
 //! `<flag>`: which forces and constraints of the file act.
 
-/// What acts.
+/// Kinds of forces and constraints, and whether they act.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Flags {
     pub gravity: bool,
@@ -26,8 +26,8 @@ impl Flags {
         actuators: true,
     };
 
-    /// What a `<flag>` leaves on; `is_off` says whether it disables a name. Every name is asked for, so that a wrong
-    /// word is reported.
+    /// Flags after a `<flag>`; `is_off` says whether it disables a name. Every name is asked for, so that a wrong word
+    /// is reported.
     pub fn after(self, is_off: &mut dyn FnMut(&str) -> bool) -> Self {
         let [passive, constraint] = ["passive", "constraint"].map(&mut *is_off);
         Self {
@@ -43,7 +43,7 @@ impl Flags {
     }
 }
 
-/// By what a number is multiplied that acts or does not.
+/// Factor of a number: 1 if it acts, 0 if not.
 pub fn on(acts: bool) -> f64 {
     f64::from(u8::from(acts))
 }

@@ -1,10 +1,10 @@
 //! How the table of MJCF's elements is written.
 
-/// What becomes of an element.
+/// Treatment of an element.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fate {
     Supported,
-    /// Nothing, with everything in it, and why.
+    /// Ignored, with everything in it, and why.
     Ignored(&'static str),
     /// An error, and why.
     Refused(&'static str),

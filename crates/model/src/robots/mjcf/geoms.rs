@@ -41,7 +41,7 @@ const SHAPES: [(&str, Shape); 9] = [
     ("sdf", Shape::Mesh),
 ];
 
-/// A geom's mass and inertia in the frame around it; nothing where it has none, or none that is known.
+/// A geom's mass and inertia in the frame around it; `None` if it has none, or none that is known.
 pub fn part<'i>(values: &mut Values<'i, '_>, item: &'i Item, class: Option<usize>, around: &Pose) -> Option<MassPart> {
     let get = |values: &Values<'i, '_>, name: &'static str| values.get(item, class, &["geom"], name);
     let shape = match get(values, "type") {

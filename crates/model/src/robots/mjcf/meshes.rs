@@ -1,4 +1,4 @@
-//! `<mesh>`: what its triangles enclose, as its `inertia` says; read where the mass of a body needs it.
+//! `<mesh>`: the solid of its triangles, by its `inertia`; read if the mass of a body needs it.
 
 use std::path::Path;
 
@@ -13,7 +13,7 @@ use crate::syntax::suggest::{self, clip};
 use crate::syntax::text_file::regular;
 use crate::syntax::tuning::TUNING as SYNTAX;
 
-/// What the mesh of a name makes up; reports why nothing does.
+/// Measures of the body that a named mesh makes up; reports why there are none.
 pub fn measured(values: &mut Values, named: &Attribute) -> Option<SolidMeasures> {
     if let Some(known) = values.meshes.known.get(&named.value) {
         return *known;

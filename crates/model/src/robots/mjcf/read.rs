@@ -79,12 +79,12 @@ fn gravity(root: &Item, values: &mut Values) -> [f64; 3] {
 
 /// Context of an element.
 pub struct Around {
-    /// Of `<frame>`s in the body.
+    /// Pose of the `<frame>`s in the body.
     pub pose: Pose,
     pub class: Option<usize>,
 }
 
-/// What a body is made of.
+/// Sources of a body's mass.
 #[derive(Default)]
 pub struct Contents<'i> {
     inertial: Option<&'i Item>,
@@ -97,7 +97,7 @@ pub struct Whole<'r> {
     pub names: &'r mut Names,
     /// Geoms that could touch something.
     pub touching: &'r mut Vec<Span>,
-    /// Of `<replicate>` and `<attach>`.
+    /// Number of copies by `<replicate>` and `<attach>`.
     pub copies: &'r mut usize,
 }
 
@@ -121,7 +121,7 @@ impl<'i> MjcfReader<'_, 'i, '_> {
         item.get("name").map(|name| format!("{}{}{}", self.prefix, name.value, self.suffix))
     }
 
-    /// What stands in a body or in a frame.
+    /// Reads the elements in a body or in a frame.
     pub fn inside(&mut self, item: &'i Item, body: usize, around: &Around, contents: &mut Contents<'i>) {
         for inner in &item.items {
             match inner.tag.as_str() {
@@ -349,7 +349,7 @@ impl<'i> MjcfReader<'_, 'i, '_> {
         })
     }
 
-    /// What `<inertial>` says, with the rotation of its frame.
+    /// Mass and inertia of `<inertial>`, with the rotation of its frame.
     fn inertial(&mut self, item: &Item) -> Option<(GeomMass, Quaternion)> {
         let (center, mut rotation) = self.values.frame(item, None, &[]);
         let Some(mass) = item.get("mass") else {

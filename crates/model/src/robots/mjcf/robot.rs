@@ -1,4 +1,4 @@
-//! What an MJCF says, typed, defaults applied: bodies, joints and what couples and drives them, lengths in m, angles in
+//! Contents of an MJCF, typed, defaults applied: bodies, joints and their couplings and drives, lengths in m, angles in
 //! rad.
 
 use std::collections::{HashMap, HashSet};
@@ -65,7 +65,7 @@ pub struct Joint {
     pub body: usize,
     /// In the body's frame.
     pub position: [f64; 3],
-    /// Of length one.
+    /// Unit vector.
     pub axis: [f64; 3],
     pub damping: Number,
     pub friction: Number,
@@ -166,7 +166,7 @@ pub struct Actuator {
     pub name: String,
     pub span: Span,
     pub on: Length,
-    /// What the sum is in the file's configuration.
+    /// Value of the sum in the file's configuration.
     pub offset: f64,
     pub gear: Number,
     pub law: ActuatorLaw,
@@ -177,7 +177,7 @@ pub struct Actuator {
     pub force: Option<[f64; 2]>,
 }
 
-/// What names of the file stand for.
+/// Objects that names of the file stand for.
 #[derive(Default)]
 pub struct Names {
     /// Names in formulas of bodies, of joints, and of the sites of each body.

@@ -4,8 +4,9 @@
 //! k = m/(T ζ)²,   d = 2 m/T,   1/m = (M⁻¹)ⱼⱼ
 //! ```
 //!
-//! where M is the mass matrix of the joints in the file's configuration, with armatures: m is what a force in the joint
-//! feels while all others are free. And `dampratio`: the damping of an actuator that holds a position with the gain kₚ,
+//! where M is the mass matrix of the joints in the file's configuration, with armatures: m is the inertia that a force
+//! in the joint feels while all others are free. And `dampratio`: the damping of an actuator that holds a position with
+//! the gain kₚ,
 //!
 //! ```text
 //! kᵥ = 2 ζ √(kₚ m),   1/m = g M⁻¹ gᵀ
@@ -119,7 +120,7 @@ fn mass_matrix(robot: &Robot, poses: &[Pose], degrees: &[Degree]) -> DMatrix<f64
         let [x, y, z] = algebra::rotate_tensor(&pose.rotation, &tensor).each_ref().map(plain);
         let tensor = nalgebra::Matrix3::from_columns(&[x, y, z]);
         let center = plain(&pose.position);
-        // Degrees of freedom that move it: place, velocity of its centre, angular velocity.
+        // Degrees of freedom that move it: index, velocity of its centre, angular velocity.
         let mut moving = Vec::new();
         let mut above = index;
         while above != 0 {

@@ -1,4 +1,4 @@
-//! Which elements and attributes of MJCF there are, and what becomes of each.
+//! Elements and attributes of MJCF, and the treatment of each.
 
 use super::elements::{BODIES, COUPLINGS, SECTIONS};
 use super::format::Rule;

@@ -25,7 +25,7 @@ struct Class<'i> {
     item: &'i Item,
 }
 
-/// What values are read with.
+/// Context in which values are read.
 pub struct Values<'i, 'd> {
     pub diagnostics: &'d mut Diagnostics,
     classes: Vec<Class<'i>>,
@@ -34,20 +34,20 @@ pub struct Values<'i, 'd> {
     pub meshes: Meshes<'i>,
 }
 
-/// What `<compiler>` says.
+/// Settings of `<compiler>`.
 pub struct Settings {
     /// rad of one unit of an angle.
     pub angle: f64,
     pub euler: [(usize, bool); 3],
     pub autolimits: bool,
-    /// Whether inertias come from geoms; where it is not said, of bodies without `<inertial>`.
+    /// Whether inertias come from geoms; if not given, those of bodies without `<inertial>` do.
     pub from_geoms: Option<bool>,
     pub groups: [f64; 2],
     pub least_mass: f64,
     pub least_inertia: f64,
     pub balance: bool,
     pub total_mass: Option<f64>,
-    /// What acts.
+    /// Forces and constraints that act.
     pub flags: Flags,
 }
 
@@ -316,7 +316,7 @@ impl<'i, 'd> Values<'i, 'd> {
         whole
     }
 
-    /// A number as a parameter, with what mbint's own attribute says of it.
+    /// A number as a parameter, with the text of mbint's own attribute for it.
     pub fn number(
         &self,
         item: &Item,
@@ -332,7 +332,7 @@ impl<'i, 'd> Values<'i, 'd> {
     }
 }
 
-/// Of length one, unless it has none.
+/// Quaternion scaled to length one; `None` if its length is zero or not a number.
 fn normalised(q: &Quaternion) -> Option<Quaternion> {
     let numbers = algebra::numbers(q)?;
     let length = numbers.iter().map(|part| part * part).sum::<f64>().sqrt();

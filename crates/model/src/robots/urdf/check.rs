@@ -1,8 +1,9 @@
-//! The checks that urdf-rs does not make: unknown and repeated elements, unknown attributes, and every number in its
-//! place.
+//! The checks that urdf-rs does not make: unknown and repeated elements, unknown attributes, and the numbers of each
+//! attribute.
 //!
-//! [`rewrite`] gives the robot back as a text that urdf-rs reads without error: only what [`format`](super::format)
-//! lists, wrong values replaced after they are reported, so that all errors of a file are found at once.
+//! [`rewrite`] returns the robot as a text that urdf-rs reads without error: only the contents that
+//! [`format`](super::format) lists, wrong values replaced after they are reported, so that all errors of a file are
+//! found at once.
 
 use std::fmt::Write;
 
@@ -20,7 +21,7 @@ type Version = (u32, u32);
 /// The first with `quat_xyzw`.
 const QUATERNIONS: Version = (1, 1);
 
-/// The first in which an absent limit is none, and negative ones are errors.
+/// The first in which an absent limit means no limit, and negative ones are errors.
 const OPEN_LIMITS: Version = (1, 2);
 
 const LATEST: Version = (1, 2);

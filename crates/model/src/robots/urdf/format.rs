@@ -25,12 +25,12 @@ pub struct Rule {
 pub struct Attribute {
     pub name: &'static str,
     pub shape: AttributeContent,
-    /// The value in place of one that is wrong; NaN where no other value would do, as it satisfies no further check.
+    /// Replacement of a wrong value; NaN if no other value would do, as it satisfies no further check.
     pub instead: &'static str,
     pub absent: Absent,
 }
 
-/// What an attribute contains.
+/// Content of an attribute.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum AttributeContent {
     Text,
@@ -40,7 +40,7 @@ pub enum AttributeContent {
     Numbers(usize),
 }
 
-/// What holds where an attribute is absent.
+/// Treatment of an absent attribute.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Absent {
     /// The format's default.

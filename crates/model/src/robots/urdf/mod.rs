@@ -1,4 +1,4 @@
-//! URDF: XML with places (`check`), values by urdf-rs (`read`) → [`Robot`](robot::Robot), whose links and joints are
+//! URDF: XML with locations (`check`), values by urdf-rs (`read`) → [`Robot`](robot::Robot), whose links and joints are
 //! one tree (`tree`).
 
 mod check;

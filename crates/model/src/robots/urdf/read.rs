@@ -1,6 +1,6 @@
 //! URDF text → [`Robot`].
 //!
-//! The text is parsed for places ([`xml`](crate::robots::xml)) and checked ([`check`](super::check)); urdf-rs
+//! The text is parsed with locations ([`xml`](crate::robots::xml)) and checked ([`check`](super::check)); urdf-rs
 //! reads the values; and the remaining checks are relations of values: names, masses, axes, and that links and joints
 //! are one tree.
 
@@ -59,7 +59,7 @@ struct Numbers<'a, 'i, 'p> {
 }
 
 impl Numbers<'_, '_, '_> {
-    /// A value as a parameter, with what mbint's own attribute says of it. It stands in `attribute`.
+    /// A value as a parameter, with the text of mbint's own attribute for it. It stands in `attribute`.
     fn number(&self, attribute: &str, name: &str, value: f64, unit: &'static str) -> Number {
         let span = self.element.map_or(0..0, |element| self.places.value_or_tag(element, attribute));
         let own = self.element.and_then(|element| element.attribute_node((NAMESPACE, name)));

@@ -1,4 +1,4 @@
-//! What a URDF says, typed: links, joints, and every number with its place and the name it has as a parameter.
+//! Contents of a URDF, typed: links, joints, and every number with its location and its name as a parameter.
 
 use crate::robots::number::Number;
 use crate::syntax::source::Span;
@@ -20,14 +20,14 @@ pub struct Inertial {
 
 #[derive(Clone, Debug)]
 pub struct Link {
-    /// A name in formulas: what the file says, with `_` for what cannot stand there.
+    /// A name in formulas: that of the file, with `_` for characters that cannot stand there.
     pub name: String,
     pub span: Span,
     pub inertial: Option<Inertial>,
     pub visuals: Vec<Visual>,
 }
 
-/// A part of what a link looks like.
+/// A part of a link's appearance.
 #[derive(Clone, Debug)]
 pub struct Visual {
     /// Where it is in the link's frame, m.
@@ -54,7 +54,7 @@ pub enum VisualShape {
     },
     /// Its radius.
     Sphere(f64),
-    /// Of a file.
+    /// A mesh of a file.
     Mesh {
         /// As the robot's file names it.
         file: String,
@@ -87,7 +87,7 @@ impl UrdfJointType {
     }
 }
 
-/// Positions in m or rad, effort in N or N m, velocity in m/s or rad/s; absent where there is none.
+/// Positions in m or rad, effort in N or N m, velocity in m/s or rad/s; `None` for no limit.
 #[derive(Clone, Debug)]
 pub struct Limits {
     pub lower: Option<Number>,

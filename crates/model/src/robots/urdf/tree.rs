@@ -4,7 +4,7 @@ use super::robot::Robot;
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::{Diagnostic, Diagnostics};
 
-/// Finds the root and the order of the joints; says why there is none.
+/// Finds the root and the order of the joints; reports why there is none.
 pub fn order(robot: &mut Robot, diagnostics: &mut Diagnostics) -> bool {
     let mut above: Vec<Option<usize>> = vec![None; robot.links.len()];
     let mut children: Vec<Vec<usize>> = vec![Vec::new(); robot.links.len()];

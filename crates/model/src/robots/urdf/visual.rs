@@ -1,9 +1,9 @@
-//! `<visual>`: what a link looks like. It is for pictures only: what cannot be read is left out.
+//! `<visual>`: appearance of a link. It is for pictures only: unreadable parts are omitted.
 
 use super::robot::{Visual, VisualShape};
 use crate::robots::xml::{Element, child, children, plain};
 
-/// What links of a robot look like.
+/// Appearance of a robot's links.
 pub struct Visuals<'a, 'i> {
     root: Element<'a, 'i>,
 }
@@ -25,7 +25,7 @@ impl<'a, 'i> Visuals<'a, 'i> {
         Some(Visual { xyz: part("xyz"), rpy: part("rpy"), shape, color: self.color(visual) })
     }
 
-    /// Of its own material, or of the robot's of that name.
+    /// Colour of its own material, or of the robot's material of that name.
     fn color(&self, visual: Element<'a, 'i>) -> Option<[f64; 3]> {
         let material = child(visual, "material")?;
         let rgb = |material: Element| {
