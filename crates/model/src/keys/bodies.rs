@@ -13,11 +13,11 @@ pub const POINT: Image = Image::PolarOr(<PointFrame as Grammar>::images);
 grammar! {
     /// A rigid body with its frame.
     Body is "a body" {
-        /// kg; 0 where joints or springs determine where the body is.
+        /// Mass, kg; 0 if joints or springs determine where the body is.
         mass: Option<Number>,
-        /// About the centre of mass, kg*m^2.
+        /// Moment of inertia about the centre of mass, kg*m^2.
         inertia: Option<InertiaFile> as Image::Keys(<Tensor as Grammar>::images),
-        /// In the body's frame, m; by default the frame's origin.
+        /// Centre of mass in the body's frame, m; by default the frame's origin.
         center_of_mass: Option<Components> as Image::Polar,
         /// Coordinates that can change; by default x, y and angle, in space x, y, z and orientation.
         coordinates: Option<Vec<CoordinateName>>,
@@ -33,29 +33,29 @@ grammar! {
 
     /// A beam with mass.
     FlexibleBeam is "a beam" {
-        /// Without tension, m.
+        /// Length without tension, m.
         length: Number,
-        /// kg/m
+        /// Mass per length, kg/m.
         mass_per_length: Number,
-        /// EA, N
+        /// Axial stiffness EA, N.
         axial_stiffness: Number,
-        /// EI, N*m^2; in space that about z of the nodes.
+        /// Bending stiffness EI, N*m^2; in space that about z of the nodes.
         bending_stiffness: Number,
-        /// In space: EI about y, N*m^2; by default that about z.
+        /// In space: bending stiffness EI about y, N*m^2; by default that about z.
         bending_stiffness_y: Option<Number>,
-        /// In space, and needed there: GJ, N*m^2
+        /// In space, and needed there: torsional stiffness GJ, N*m^2.
         torsional_stiffness: Option<Number>,
-        /// GA of shear, with the section's shear coefficient in it, N; by default it does not shear.
+        /// Shear stiffness GA, with the section's shear coefficient in it, N; by default the beam does not shear.
         shear_stiffness: Option<Number>,
-        /// Kelvin and Voigt's: stress by strain rate over stress by strain, s; by default 0.
+        /// Damping of Kelvin and Voigt: stress by strain rate over stress by strain, s; by default 0.
         damping: Option<Number>,
-        /// Between nodes, each of the same length; by default 4.
+        /// Number of elements between nodes, each of the same length; by default 4.
         elements: Option<usize>,
     }
 
     /// A frame at a point.
     PointFrame is "a point" {
-        /// In the body's frame, m; by default its origin.
+        /// Position in the body's frame, m; by default its origin.
         position: Option<Components> as Image::Polar,
         /// Rotation of the frame at the point against the body's; by default none.
         rotation: Option<Rotation> as Image::Rotation,

@@ -75,7 +75,7 @@ grammar! {
         objective: Option<ObjectiveFile>,
         /// How long, and in which steps; `analysis: statics` needs none.
         simulation: Option<Simulation>,
-        /// Which bounds to compute; without this, Chebyshev of order 5.
+        /// Bounds to compute; without this, Chebyshev of order 5.
         bounds: Option<crate::methods::keys::Bounds>,
         /// Distributions of the outputs, in addition to their bounds.
         statistics: Option<Statistics>,
@@ -129,7 +129,7 @@ grammar! {
 
     /// How time is stepped in a scene.
     SceneSimulation is "`simulation`" {
-        /// s
+        /// Duration of the motion, s.
         duration: Option<Number>,
         /// Length of every step, s; instead of a `tolerance` of the model.
         step: Option<Number>,
@@ -138,7 +138,7 @@ grammar! {
         tolerance: Option<Number>,
         /// HHT parameter from -1/3 to below 0.
         alpha: Option<Number>,
-        /// s between rows of output.
+        /// Time between rows of output, s.
         output_step: Option<Number>,
         /// Coordinates that describe the motion. With `joint`, one joint of each loop is a constraint: the one with
         /// which a step is shortest.
@@ -256,7 +256,7 @@ grammar! {
         /// Cosines of which realisations are made, by default 100. Where a vibration is lightly damped, they should be
         /// nearer to each other than one over the duration.
         lines: Option<u32>,
-        /// It begins smoothly within this time, s; by default at once.
+        /// Time within which it begins smoothly, s; by default it begins at once.
         ramp: Option<Number>,
         /// Whole number that chooses the realisation of the motion; by default 1.
         seed: Option<u32>,

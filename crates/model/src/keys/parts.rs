@@ -65,7 +65,7 @@ grammar! {
         position: Option<Components>,
         /// Angle about z, rad.
         angle: Option<Number>,
-        /// In space; that about z is the same as `angle`.
+        /// Rotation, in space; that about z is the same as `angle`.
         rotation: Option<Rotation>,
     }
 
@@ -73,7 +73,7 @@ grammar! {
     PointPort is "a port" {
         /// The body.
         on: String,
-        /// In the body's frame, m; by default its origin.
+        /// Position in the body's frame, m; by default its origin.
         position: Option<Components>,
         /// Rotation of the frame at the port against the body's; by default none.
         rotation: Option<Rotation>,

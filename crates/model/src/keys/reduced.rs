@@ -32,9 +32,9 @@ schema_only! {
 grammar! {
     /// A formula, of every time, and how it is shown.
     OutputFormula is "an output" {
-        /// The reduced formula.
+        /// Formula of the output.
         formula: Number,
-        /// In which unit plots, reports and tables show it, e.g. `mm`. Numbers in files stay in SI.
+        /// Unit in which plots, reports and tables show it, e.g. `mm`. Numbers in files stay in SI.
         unit: Option<UnitName>,
     }
 
@@ -66,26 +66,26 @@ grammar! {
         when: Option<String>,
         /// When this comparison holds last, s.
         last_when: Option<String>,
-        /// From when on this formula stays within `band` of `target`, s.
+        /// Time from which on this formula stays within `band` of `target`, s.
         settling: Option<Number>,
         /// How far this formula goes beyond `target`, seen from its start; without `target`, beyond its value at the
         /// end.
         overshoot: Option<Number>,
         /// Width of the narrowest strip that holds this path; with `line`, the greatest distance from that.
         straightness: Option<PathFile>,
-        /// From when the motion counts, s.
+        /// Time from which on the motion counts, s.
         from: Option<Number>,
-        /// Until when the motion counts, s.
+        /// Time until which the motion counts, s.
         to: Option<Number>,
         /// The time of `value`, s.
         at: Option<Number>,
-        /// Where `settling` and `overshoot` lead to.
+        /// Value that `settling` and `overshoot` lead to.
         target: Option<Number>,
         /// Half the width of the band of `settling`.
         band: Option<Number>,
         /// Line that the ordinate of `straightness` is compared with.
         line: Option<Number>,
-        /// In which unit reports and tables show it, e.g. `mm`. Numbers in files stay in SI.
+        /// Unit in which reports and tables show it, e.g. `mm`. Numbers in files stay in SI.
         unit: Option<UnitName>,
     }
 
@@ -99,9 +99,9 @@ grammar! {
         max: Option<Number>,
         /// The smallest value allowed.
         min: Option<Number>,
-        /// From when it is required, s.
+        /// Time from which on it is required, s.
         from: Option<Number>,
-        /// Until when it is required, s.
+        /// Time until which it is required, s.
         to: Option<Number>,
         /// The only time at which it is required, s.
         at: Option<Number>,

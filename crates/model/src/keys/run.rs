@@ -7,7 +7,7 @@ use super::*;
 grammar! {
     /// How time is stepped.
     Simulation is "`simulation`" {
-        /// s
+        /// Duration of the motion, s.
         duration: Number,
         /// Length of every step, s; by default 1e-3.
         step: Option<Number>,
@@ -16,8 +16,8 @@ grammar! {
         tolerance: Option<Number>,
         /// HHT parameter from -1/3 to below 0; by default -0.1.
         alpha: Option<Number>,
-        /// s between rows of output; by default about a 200th of the duration. The last row is at the end, however
-        /// near.
+        /// Time between rows of output, s; by default about a 200th of the duration. The last row is at the end,
+        /// however near.
         output_step: Option<Number>,
         /// Coordinates that describe the motion; by default `auto`, whichever take fewer instructions. With `joint`,
         /// one joint of each loop is a constraint: the one with which a step is shortest.

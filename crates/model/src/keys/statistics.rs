@@ -11,7 +11,7 @@ schema_only! {
     pub enum LawName {
         /// Every value as likely as any other; the default.
         Uniform,
-        /// Beyond the interval, too; where nothing else is said, the tolerance is three standard deviations.
+        /// Normal law, also beyond the interval; unless stated otherwise, the tolerance is three standard deviations.
         Normal,
         /// The same, cut off at the interval's ends.
         TruncatedNormal,
@@ -34,7 +34,7 @@ schema_only! {
     /// Cost of a tolerance.
     #[schemars(untagged, inline)]
     pub enum CostFile {
-        /// It stays as it is.
+        /// The tolerance stays as it is.
         Fixed(FixedName),
         Full(Box<CostKinds>),
     }
@@ -45,13 +45,13 @@ grammar! {
     LawKinds is "a `distribution`" {
         /// Every value as likely as any other.
         uniform: Option<NoNumbers>,
-        /// Beyond the interval, too.
+        /// Normal law, also beyond the interval.
         normal: Option<NormalLaw>,
-        /// Cut off at the interval's ends.
+        /// Normal law, cut off at the interval's ends.
         truncated_normal: Option<NormalLaw>,
-        /// Beyond the interval, too; its logarithm is normal.
+        /// Law whose logarithm is normal, also beyond the interval.
         lognormal: Option<LognormalLaw>,
-        /// Linear to and from the mode.
+        /// Linear density to and from the mode.
         triangular: Option<TriangularLaw>,
         /// A beta law over the interval.
         beta: Option<BetaLaw>,
@@ -86,9 +86,9 @@ grammar! {
 
     /// Exponents of the beta law, plus one.
     BetaLaw is "`beta`" {
-        /// At the lower end.
+        /// Exponent at the lower end, plus one.
         alpha: f64,
-        /// At the upper end.
+        /// Exponent at the upper end, plus one.
         beta: f64,
     }
 
@@ -101,7 +101,8 @@ grammar! {
         samples: Option<u32>,
         /// Whole number that chooses the samples of random excitations; by default 1.
         seed: Option<u32>,
-        /// Under random excitations: failures of requirements within this time, s, of which motions are parts.
+        /// Under random excitations: time, s, within which failures of requirements are counted; motions are parts of
+        /// it.
         exposure: Option<Number>,
         /// Shares below the quantiles, e.g. `[0.135%, 50%, 99.865%]`, which is the default.
         quantiles: Option<Vec<Number>>,

@@ -13,7 +13,7 @@ schema_only! {
         X,
         Y,
         Z,
-        /// About z.
+        /// Angle about z.
         Angle,
         /// Euler parameters: any rotation.
         Orientation,
@@ -100,7 +100,7 @@ schema_only! {
     /// A moment of inertia, the three principal ones along the frame's axes, or a tensor.
     #[schemars(untagged, inline)]
     pub enum InertiaFile {
-        /// About z; in space the same about every axis.
+        /// Moment of inertia about z; in space the same about every axis.
         Scalar(Number),
         /// xx, yy and zz.
         Principal([Number; 3]),
