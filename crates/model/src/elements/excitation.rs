@@ -28,7 +28,7 @@ pub struct Excitation {
     pub middle: Formula,
     /// b, of t and parameters: half of the distance of the limits, or the largest rate.
     pub reach: Formula,
-    /// Which functions u may be.
+    /// Class of the functions u.
     pub class: Class,
 }
 
@@ -37,17 +37,17 @@ pub struct Excitation {
 pub enum Class {
     /// All between the limits.
     Bounded,
-    /// Those between the limits that are constant over each period, s.
+    /// Functions between the limits that are constant over each period, s.
     Held(f64),
-    /// Those with a bounded rate, from 0 on.
+    /// Functions with a bounded rate, from 0 on.
     Rate,
-    /// Those between the limits with a bounded rate: its ratio to `reach`, 1/s, of parameters.
+    /// Functions between the limits with a bounded rate: its ratio to `reach`, 1/s, of parameters.
     BoundedRate(Formula),
-    /// Those between limits that move with a bounded rate, of parameters.
+    /// Functions between limits that move with a bounded rate, of parameters.
     MovingRate(Formula),
-    /// Those between the limits with a mean over the duration between two, of parameters.
+    /// Functions between the limits with a mean over the duration between two, of parameters.
     Mean([Formula; 2]),
-    /// Those of a bounded energy over the duration.
+    /// Functions of a bounded energy over the duration.
     Energy {
         /// Largest ∫ u² dt, s, of parameters.
         energy: Formula,

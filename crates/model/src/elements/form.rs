@@ -100,7 +100,7 @@ pub struct Shape {
     pub position: [Formula; 3],
     /// Rotation of its frame against that one.
     pub rotation: Option<Rotation>,
-    /// In its frame.
+    /// The form, in its frame.
     pub form: Form<Formula>,
 }
 
@@ -124,7 +124,7 @@ pub type SurfaceAt = (PointRef, Shape);
 pub struct Surroundings {
     /// Whether the model leaves the plane.
     pub spatial: bool,
-    /// From where to where ground is drawn along x, m; none of it without.
+    /// Interval along x in which ground is drawn, m; `None` to draw none.
     pub along: Option<[f64; 2]>,
 }
 

@@ -32,7 +32,7 @@ pub enum Meshing<'g> {
 pub struct Flanks<'g> {
     /// The bodies, by index: that of the thread, and the other.
     pub bodies: [usize; 2],
-    /// In the ground's frame, m.
+    /// Position in the ground's frame, m.
     pub at: Vector<'g>,
     /// The unit vector along the thread, in the ground's axes.
     pub along: Vector<'g>,

@@ -28,7 +28,7 @@ use crate::grammar::quantity::Dimension;
 pub struct Trajectory {
     /// Its name.
     pub name: String,
-    /// At least two, times ascending; none of an excitation.
+    /// Points: at least two, times ascending; none for an excitation.
     pub points: Vec<Waypoint>,
     /// How it moves from one point to the next.
     pub timing: Timing,
@@ -41,9 +41,9 @@ pub struct Trajectory {
 pub struct Waypoint {
     /// s
     pub time: Formula,
-    /// In the trajectory's unit.
+    /// Value, in the trajectory's unit.
     pub value: Formula,
-    /// In its unit over s; 0 where nothing is said.
+    /// Rate, in the trajectory's unit over s; `None` for 0.
     pub rate: Option<Formula>,
 }
 

@@ -40,16 +40,16 @@ use crate::syntax::yaml;
 pub struct Bushing {
     /// Two points, each `body.point` or `body`.
     pub between: [PointRef; 2],
-    /// Along the axes of the first point's frame.
+    /// Stiffness along the axes of the first point's frame.
     #[quantity(unit = "N/m", default = 0)]
     pub stiffness: PerAxis,
-    /// Along those axes.
+    /// Damping along those axes.
     #[quantity(unit = "N*s/m", default = 0)]
     pub damping: PerAxis,
-    /// About those axes, for small rotations.
+    /// Stiffness about those axes, for small rotations.
     #[quantity(unit = "N*m/rad", default = 0)]
     pub torsional_stiffness: PerAxis,
-    /// About those axes.
+    /// Damping about those axes.
     #[quantity(unit = "N*m*s/rad", default = 0)]
     pub torsional_damping: PerAxis,
     /// Six rows: forces along and torques about those axes by displacements (N/m, N) and small rotations (N/rad,

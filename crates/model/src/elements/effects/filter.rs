@@ -122,7 +122,7 @@ impl ForceElement for Filter {
 }
 
 impl Filter {
-    /// With the coefficients of input and output, the highest power of s first, settled at an input.
+    /// Filter with the coefficients of input and output, the highest power of s first, settled at an input.
     pub(super) fn of(
         input: Formula,
         [numerator, denominator]: [Vec<Formula>; 2],

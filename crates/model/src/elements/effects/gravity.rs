@@ -24,7 +24,7 @@ use crate::multibody::BuildError;
     example = "{ acceleration: [0, -9.81] }"
 )]
 pub struct Gravity {
-    /// In the ground's axes: [0, -9.81] pulls down.
+    /// Acceleration in the ground's axes: [0, -9.81] pulls down.
     #[quantity(unit = "m/s^2")]
     pub acceleration: Components,
 }

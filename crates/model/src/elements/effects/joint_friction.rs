@@ -66,9 +66,9 @@ pub struct JointFriction {
 /// A joint with friction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FrictionJoint {
-    /// By index.
+    /// Index of the joint.
     pub joint: usize,
-    /// Which of its motions friction resists.
+    /// Motions of the joint that friction resists.
     pub mode: FrictionMode,
 }
 

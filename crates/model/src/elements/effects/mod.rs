@@ -130,7 +130,7 @@ pub trait ForceElement: Element {
 /// A state of an effect.
 #[derive(Clone, Copy, Debug)]
 pub struct StateVariable<'a> {
-    /// By which formulas know it.
+    /// Sensor by which formulas know it.
     pub sensor: Sensor,
     /// Its value at the start, of parameters.
     pub initial: &'a Formula,

@@ -121,7 +121,7 @@ struct Stretched<'g> {
     tension: Scalar<'g>,
 }
 
-/// By d and ḋ.
+/// A spring along the connecting line, by d and ḋ.
 fn along_line<'g>(line: Vector<'g>, growth: Vector<'g>, spring: Coefficients<'g>) -> Stretched<'g> {
     let passes_zero = spring.free_length.is_zero();
     let mut square = line.dot(line);
@@ -139,7 +139,7 @@ fn along_line<'g>(line: Vector<'g>, growth: Vector<'g>, spring: Coefficients<'g>
     Stretched { pull, direction, length, rate: advance / length, tension: density * length }
 }
 
-/// By d and ḋ.
+/// A spring along an axis, by d and ḋ.
 fn along_axis<'g>(line: Vector<'g>, growth: Vector<'g>, axis: Vector<'g>, spring: Coefficients<'g>) -> Stretched<'g> {
     let direction = axis.unit();
     let (length, rate) = (direction.dot(line), direction.dot(growth));

@@ -66,7 +66,7 @@ pub struct ToothFriction {
 /// A joint with teeth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Teeth {
-    /// By index.
+    /// Index of the joint.
     pub joint: usize,
     /// How they rub.
     pub kind: MeshKind,

@@ -42,7 +42,7 @@ use super::{Joint, JointElement, Kinematics, Orientation, Placement, Row, RowDoc
 pub struct Cam {
     /// The cam's centre, then the roller's centre or a point of the flat face; each `body.point` or `body`.
     between: [PointRef; 2],
-    /// Which follower.
+    /// Kind of follower.
     #[key(default = Follower::Roller)]
     follower: Follower,
     /// Distance of the follower from the centre where the lift is zero; of a roller's centre: with its radius.

@@ -47,7 +47,7 @@ pub struct Gear {
     /// How teeth touch.
     #[group]
     flanks: ToothContact,
-    /// From the point where the axes intersect to the middle of the teeth of bevel gears.
+    /// Distance from the point where the axes intersect to the middle of the teeth of bevel gears.
     #[quantity(unit = "m", positive, constant)]
     cone_distance: Option<Formula>,
 }

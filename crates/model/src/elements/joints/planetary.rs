@@ -59,7 +59,7 @@ impl Planetary {
         [self.sun, self.ring, self.carrier].map(on)
     }
 
-    /// For each member 1, or −1 where its joint counts the other way round than that of the first one named.
+    /// Sense of each member: 1, or −1 if its joint counts the other way round than that of the first one named.
     fn senses(&self, own: usize, k: &dyn Kinematics<'_>) -> Result<[f64; 3], BuildError> {
         let refuse = |why: String| BuildError::Teeth { joint: k.joint_name(own).to_owned(), why };
         let given: Vec<OnJoint> = self.members().into_iter().flatten().collect();

@@ -70,7 +70,7 @@ struct Touch<'g> {
     tangents: [Vector<'g>; 2],
     /// Height of the centre over the plane.
     height: Scalar<'g>,
-    /// From the centre to the lowest point.
+    /// Vector from the centre to the lowest point.
     arm: Vector<'g>,
 }
 

@@ -61,7 +61,7 @@ pub struct ToothContact {
 }
 
 impl ToothContact {
-    /// Those of which nothing is known.
+    /// Teeth of which nothing is known.
     pub fn unknown() -> Self {
         Self { pressure_angle: None, helix_angle: Formula::number(0.0), face: Formula::number(0.0) }
     }
@@ -97,7 +97,7 @@ pub struct ToothForce<'g> {
     pub bodies: [usize; 2],
     /// Their pitch point, in the ground's frame, m.
     pub at: Vector<'g>,
-    /// On the second body, in the ground's axes, N.
+    /// Force on the second body, in the ground's axes, N.
     pub force: Vector<'g>,
     /// Its magnitude, N.
     pub magnitude: Scalar<'g>,
@@ -108,7 +108,7 @@ pub struct ToothForce<'g> {
 /// A gear, or rack, and its bearing in the frame of the body that both bearings have in common.
 #[derive(Clone, Copy)]
 pub(super) struct ToothedBody<'g> {
-    /// By index.
+    /// Index of the body.
     pub body: usize,
     /// 1 if the joint's coordinate is that of the toothed body against the common one, −1 if it is the opposite.
     pub sign: f64,
@@ -303,7 +303,7 @@ impl<'g, 'k> Mesh<'g, 'k> {
         })
     }
 
-    /// At the nominal parameters.
+    /// Value at the nominal parameters.
     pub fn nominal(&self, value: Scalar<'g>) -> f64 {
         self.k.nominal([value; 3].into())[0]
     }

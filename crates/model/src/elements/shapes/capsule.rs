@@ -22,7 +22,7 @@ pub struct Capsule {
     /// Ends of the line in its middle, in its frame.
     #[quantity(unit = "m", constant)]
     ends: Points,
-    /// R
+    /// Radius R.
     #[quantity(unit = "m", constant, positive)]
     radius: Formula,
     #[group]

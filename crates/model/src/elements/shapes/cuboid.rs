@@ -20,7 +20,7 @@ use crate::grammar::{Checked, Fields, Reader, SpacePoint, SymbolTable};
     checked
 )]
 pub struct Cuboid {
-    /// Along the axes of its frame; in the plane two are enough.
+    /// Lengths along the axes of its frame; in the plane two are enough.
     #[quantity(unit = "m", constant)]
     #[key(image = Same)]
     size: SpacePoint,

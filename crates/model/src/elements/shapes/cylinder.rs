@@ -17,13 +17,13 @@ use crate::grammar::SpaceAxis;
     example = "{ radius: 0.05, length: 0.02, axis: z }"
 )]
 pub struct Cylinder {
-    /// R
+    /// Radius R.
     #[quantity(unit = "m", constant, positive)]
     radius: Formula,
-    /// L, along the axis.
+    /// Length L, along the axis.
     #[quantity(unit = "m", constant, positive)]
     length: Formula,
-    /// u, also in the plane any one: about z it is a disc there.
+    /// Axis u, any one also in the plane: about z it is a disc there.
     #[key(default = SpaceAxis::z())]
     axis: SpaceAxis,
     #[group]

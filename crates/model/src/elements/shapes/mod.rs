@@ -22,7 +22,7 @@ shapes! {
 
 /// A kind of shape; its field `place` is its frame in the body's.
 pub trait ShapeElement: Element {
-    /// In its frame.
+    /// Its form, in its frame.
     fn form(&self) -> Form<Formula>;
 }
 

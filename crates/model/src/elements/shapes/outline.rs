@@ -23,7 +23,7 @@ pub struct Outline {
     /// Corners in the x and y of its frame, in their order. `{ to: [x, y], radius: R }` is an arc to a point.
     #[quantity(unit = "m", constant)]
     points: ContactLine,
-    /// Along z, half of it on each side.
+    /// Thickness along z, half of it on each side.
     #[quantity(unit = "m", constant, nonnegative, default = 0)]
     thickness: Formula,
     #[group]

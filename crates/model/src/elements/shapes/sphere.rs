@@ -16,7 +16,7 @@ use crate::elements::form::Form;
     example = "{ radius: 0.03, position: [0.2, 0] }"
 )]
 pub struct Sphere {
-    /// R
+    /// Radius R.
     #[quantity(unit = "m", constant, positive)]
     radius: Formula,
     #[group]

@@ -52,19 +52,19 @@ pub struct Beam {
     /// Direction of the straight beam in both bodies' frames, in the plane.
     #[key(default = Direction::along(0))]
     pub axis: Direction,
-    /// Without tension.
+    /// Length without tension.
     #[quantity(unit = "m", constant, positive)]
     pub length: Formula,
-    /// EA.
+    /// Axial stiffness EA.
     #[quantity(unit = "N")]
     pub axial_stiffness: Formula,
-    /// EI, about z.
+    /// Bending stiffness EI, about z.
     #[quantity(unit = "N*m^2")]
     pub bending_stiffness: Formula,
-    /// EI about y of the frames, in space; by default that about z.
+    /// Bending stiffness EI about y of the frames, in space; by default that about z.
     #[quantity(unit = "N*m^2")]
     pub bending_stiffness_y: Option<Formula>,
-    /// GJ: the beam bends and twists in space.
+    /// Torsional stiffness GJ: the beam bends and twists in space.
     #[quantity(unit = "N*m^2")]
     #[key(image = Unknown)]
     pub torsional_stiffness: Option<Formula>,

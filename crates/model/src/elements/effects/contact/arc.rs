@@ -19,14 +19,14 @@ pub struct Arc<'g> {
     radius: Scalar<'g>,
     /// σ
     turn: Scalar<'g>,
-    /// From c to the middle of the arc, of length 1.
+    /// Unit vector from c to the middle of the arc.
     towards: Vector<'g>,
-    /// At both ends.
+    /// Tangents at both ends.
     pub tangents: [Vector<'g>; 2],
 }
 
 impl<'g> Arc<'g> {
-    /// Between two points; the radius is negative where it turns right.
+    /// Arc between two points; the radius is negative if it turns right.
     pub fn between([start, end]: [Vector<'g>; 2], signed: Scalar<'g>) -> Self {
         let radius = (signed * signed).sqrt();
         let turn = signed / radius;

@@ -58,11 +58,11 @@ pub struct Face {
 #[derive(Clone, Debug)]
 pub struct Edge {
     pub ends: [usize; 2],
-    /// From the first end.
+    /// Unit vector from the first end.
     pub along: Point,
     /// Numbers of both faces.
     faces: [usize; 2],
-    /// In each of both faces, across the edge to the inside.
+    /// Unit vector in each of both faces, across the edge to the inside.
     pub inward: [Point; 2],
 }
 

@@ -217,7 +217,7 @@ impl<'g> Edge<'g> {
         self.arc.map_or(self.tangent, |arc| arc.tangents[1])
     }
 
-    /// From the nearest point to the centre, which is before the start and past the end where these say so.
+    /// Vector from the nearest point to the centre, which is before the start and past the end where these say so.
     fn across(&self, place: &Place<'g>, [before, past]: [Scalar<'g>; 2]) -> Vector<'g> {
         if let Some(arc) = &self.arc {
             return arc.across(place.centre, [before, past]);

@@ -31,14 +31,14 @@ pub struct Rod<'g> {
 }
 
 impl<'g> Rod<'g> {
-    /// Between two points.
+    /// Rod between two points.
     pub fn between(start: Vector<'g>, end: Vector<'g>) -> Self {
         let way = end - start;
         let length = way.norm();
         Self { start, tangent: way / length, length }
     }
 
-    /// From a point along a unit vector.
+    /// Rod from a point along a unit vector.
     pub fn along(start: Vector<'g>, tangent: Vector<'g>, length: Scalar<'g>) -> Self {
         Self { start, tangent, length }
     }

@@ -41,7 +41,7 @@ pub struct Friction {
 #[derive(Clone, Debug, Element)]
 #[element(what = "`friction_along`")]
 pub struct FrictionAlong {
-    /// Along the surface, in the first point's frame.
+    /// Direction along the surface, in the first point's frame.
     pub direction: Direction,
     /// Over the force across the contact, while sliding along that direction; `friction` holds across it.
     #[quantity(unit = "1", constant, nonnegative)]

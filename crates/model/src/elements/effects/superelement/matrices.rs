@@ -26,7 +26,7 @@ use crate::elements::tuning::TUNING;
 
 /// Coordinates of a node: displacements, then rotations.
 pub const OF_NODE: usize = 6;
-/// Those of the plane, among them.
+/// Coordinates of the plane, among those of a node.
 const OF_PLANE: [usize; 3] = [0, 1, 5];
 
 /// Mass and stiffness of a flexible body.
@@ -36,7 +36,7 @@ pub struct Matrices {
     pub nodes: Vec<[f64; 3]>,
     /// Number of normal modes.
     pub modes: usize,
-    /// By [`OF_NODE`] coordinates of each node, then the modes. kg, kg m, kg m².
+    /// Mass matrix, by [`OF_NODE`] coordinates of each node, then the modes. kg, kg m, kg m².
     pub mass: DMatrix<f64>,
     /// The same; N/m, N, N m.
     pub stiffness: DMatrix<f64>,
@@ -66,7 +66,7 @@ impl Matrices {
         all
     }
 
-    /// From the first node to another of the undeformed body, m.
+    /// Vector from the first node to another of the undeformed body, m.
     pub fn offset(&self, node: usize) -> [f64; 3] {
         std::array::from_fn(|axis| self.nodes[node][axis] - self.nodes[0][axis])
     }
