@@ -183,7 +183,7 @@ fn closing(entry: &Entry, chain: &Chain) -> Node {
 struct Forest<'f, 'n> {
     dimensions: &'f [Dimension<'n>],
     faces: &'f Faces,
-    /// By face: the dimensions that it has, and the faces at their other ends.
+    /// Per face: the dimensions that it has, and the faces at their other ends.
     edges: Vec<Vec<(usize, usize)>>,
 }
 
@@ -227,7 +227,7 @@ impl<'f, 'n> Forest<'f, 'n> {
         Some(path)
     }
 
-    /// By face: the dimension by which the search from a face came to it, and the face before.
+    /// Per face: the dimension by which the search from a face came to it, and the face before.
     fn reached(&self, from: usize) -> Vec<Option<(usize, usize)>> {
         let mut before = vec![None; self.edges.len()];
         let mut next = VecDeque::from([from]);

@@ -54,7 +54,7 @@ pub struct Description {
     pub description: Option<String>,
     /// Bodies, joints, effects and their start.
     pub mechanism: Arc<DeclaredMechanism>,
-    /// In an order in which each depends only on earlier ones.
+    /// Parameters, in an order in which each depends only on earlier ones.
     pub parameters: Vec<Parameter>,
     /// Analysis.
     pub analysis: Analysis,
@@ -74,9 +74,9 @@ pub struct Description {
     pub parameter_units: BTreeMap<String, DisplayUnit>,
     /// How time is stepped.
     pub simulation: Simulation,
-    /// Which bounds are asked for.
+    /// Requested bounds.
     pub bounds: BoundsRequest,
-    /// Which statistics are asked for, and the parameters' laws.
+    /// Requested statistics, and the parameters' laws.
     pub statistics: Statistics,
     /// Chains of dimensions, with the outputs that close them.
     pub chains: Vec<Chain>,
@@ -86,7 +86,7 @@ pub struct Description {
     pub parameter_index: NameIndex,
 }
 
-/// In how many dimensions a mechanism moves.
+/// Number of dimensions in which a mechanism moves.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Space {
     /// Whether a body has six degrees of freedom unless it declares its coordinates, and joints constrain all six. A
@@ -179,7 +179,7 @@ impl Deref for Description {
 }
 
 impl Description {
-    /// Nothing yet, in the plane, for a second.
+    /// A planar model without parts, for a second.
     pub fn empty(name: String) -> Self {
         Self {
             name,

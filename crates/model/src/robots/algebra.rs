@@ -29,7 +29,7 @@ impl Value {
         matches!(self, Self::Number(value) if *value == 0.0)
     }
 
-    /// As a part of a formula.
+    /// Text as a part of a formula.
     pub fn text(&self) -> String {
         match self {
             // In full precision; a sign must not meet an operator.
@@ -123,7 +123,7 @@ pub fn product(p: &Quaternion, q: &Quaternion) -> Quaternion {
     })
 }
 
-/// About an axis of length one.
+/// Rotation about an axis of length one.
 pub fn turn(axis: [f64; 3], angle: f64) -> Quaternion {
     let (cos, sin) = (math::cos(angle / 2.0), math::sin(angle / 2.0));
     [cos, sin * axis[0], sin * axis[1], sin * axis[2]].map(Value::Number)
@@ -134,7 +134,7 @@ pub fn inverse([w, x, y, z]: &Quaternion) -> Quaternion {
     [w.clone(), neg(x), neg(y), neg(z)]
 }
 
-/// About the fixed x, then y, then z.
+/// Rotation about the fixed x, then y, then z.
 pub fn roll_pitch_yaw(angles: &Vector) -> Quaternion {
     let about = |axis: usize| {
         let [cos, sin] = half(&angles[axis]);

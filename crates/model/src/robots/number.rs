@@ -5,7 +5,7 @@ use crate::syntax::source::Span;
 /// A number of the file.
 #[derive(Clone, Debug)]
 pub struct Number {
-    /// As a parameter, e.g. `link.forearm.mass`.
+    /// Name as a parameter, e.g. `link.forearm.mass`.
     pub name: String,
     /// SI.
     pub value: f64,

@@ -104,8 +104,8 @@ pub struct FlexibleBeam {
 pub struct Point {
     /// Its name within the body.
     pub name: String,
-    /// In the body's frame, m.
+    /// Position in the body's frame, m.
     pub position: [Formula; 3],
-    /// From the frame at the point to the body's; absent where their axes are parallel.
+    /// Rotation from the frame at the point to the body's; `None` if their axes are parallel.
     pub rotation: Option<Rotation>,
 }

@@ -19,9 +19,9 @@ pub struct DeclaredMechanism {
     pub bodies: Vec<Body>,
     /// Beams, of which the nodes are bodies and the elements effects.
     pub beams: Vec<FlexibleBeam>,
-    /// In file order.
+    /// Joints, in file order.
     pub joints: Vec<Joint>,
-    /// In file order.
+    /// Effects, in file order.
     pub effects: Vec<Effect>,
     /// The program that answers instead of a mechanism, if there is one.
     pub black_box: Option<BlackBox>,
@@ -48,7 +48,7 @@ pub struct DeclaredMechanism {
 }
 
 impl DeclaredMechanism {
-    /// Nothing yet, in the plane.
+    /// A planar mechanism without parts.
     pub(super) fn empty() -> Self {
         Self {
             space: Space { spatial: false, why: String::new() },

@@ -22,7 +22,7 @@ pub struct ReducedOutput {
     pub sources: Vec<Formula>,
     /// Indices of these among the outputs, once they are there.
     pub outputs: Vec<usize>,
-    /// From when, s.
+    /// Time from which on the motion counts, s.
     pub from: f64,
     /// Until when, s.
     pub to: f64,
@@ -57,7 +57,7 @@ pub enum ReducedKind {
     When,
     /// When the source is last not negative.
     LastWhen,
-    /// From when on the source stays negative.
+    /// Time from which on the source stays negative.
     Settling,
     /// How far it goes beyond its target (the second source; without one, its own value at the end), seen from its
     /// start.
@@ -71,7 +71,7 @@ pub enum ReducedKind {
 pub struct Requirement {
     /// Its name.
     pub name: String,
-    /// As the file writes it.
+    /// Text of the file.
     pub text: String,
     /// SI unit of the slacks; empty where dimensionless or unknown.
     pub unit: String,

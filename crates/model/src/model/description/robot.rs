@@ -6,7 +6,7 @@ use crate::robots::urdf::robot::Visual;
 /// The links and joints of a URDF, which the bodies and joints of the model were made of.
 #[derive(Clone, Debug)]
 pub struct RobotTree {
-    /// As the file calls it.
+    /// Name in the file.
     pub name: String,
     /// Each behind its parent.
     pub links: Vec<TreeLink>,
@@ -36,7 +36,7 @@ pub struct TreeJoint {
     pub name: String,
     /// The file's word for it.
     pub kind: &'static str,
-    /// In the child's frame, where the joint has one coordinate.
+    /// Axis in the child's frame, if the joint has one coordinate.
     pub axis: Option<[f64; 3]>,
     /// Smallest and largest position; `None` for no limit.
     pub limits: [Option<f64>; 2],

@@ -31,7 +31,7 @@ pub enum SchemeChoice {
     Explicit,
 }
 
-/// By which coordinates a motion is described; the motion is the same.
+/// Coordinates that describe a motion; the motion is the same.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Formulation {
     /// Whichever takes fewer instructions.

@@ -22,7 +22,7 @@ pub enum StartValue {
     Orientation {
         /// Body index.
         body: usize,
-        /// From the body's frame to the ground's.
+        /// Rotation from the body's frame to the ground's.
         rotation: Rotation,
     },
     /// Angular velocity of a body that has an orientation, rad/s.
@@ -38,7 +38,7 @@ pub enum StartValue {
     RollPitchYaw {
         /// Body index.
         body: usize,
-        /// Which: 0 to 2 for roll, pitch, yaw.
+        /// Index of the angle: 0 to 2 for roll, pitch, yaw.
         angle: usize,
         /// rad
         value: Formula,
@@ -47,9 +47,9 @@ pub enum StartValue {
     AngularRate {
         /// Body index.
         body: usize,
-        /// Which part: 0 to 2 for x, y, z.
+        /// Index of the component: 0 to 2 for x, y, z.
         axis: usize,
-        /// Along an axis of the body's frame instead of the ground's.
+        /// Whether the axis is the body frame's instead of the ground's.
         in_body: bool,
         /// rad/s
         value: Formula,
@@ -69,7 +69,7 @@ pub enum StartValue {
     Joint {
         /// Joint index.
         joint: usize,
-        /// Which of its coordinates.
+        /// One of its coordinates.
         coordinate: JointCoordinate,
         /// Position or velocity.
         order: TimeOrder,

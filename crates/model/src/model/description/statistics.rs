@@ -15,7 +15,7 @@ pub struct Statistics {
     pub exposure: Option<f64>,
     /// Shares below the quantiles.
     pub quantiles: Vec<f64>,
-    /// By the names of uncertain parameters; those that are not in are uniform.
+    /// Laws by the names of uncertain parameters; others are uniform.
     pub laws: Vec<(String, Law)>,
     /// Parameters that depend on each other.
     pub correlations: Vec<Correlation>,
@@ -44,9 +44,9 @@ pub struct Correlation {
 /// Cost of a parameter's tolerance.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Cost {
-    /// It stays as it is.
+    /// The tolerance stays as it is.
     Fixed,
-    /// So much at the model's tolerance, and inversely proportional to the tolerance.
+    /// Cost at the model's tolerance; it is inversely proportional to the tolerance.
     Reciprocal(f64),
     /// Grades of processes, the tightest first.
     Grades(Vec<Grade>),
@@ -57,7 +57,7 @@ pub enum Cost {
 pub struct Grade {
     /// `IT7`.
     pub name: String,
-    /// To either side, in the parameter's SI unit.
+    /// Tolerance to either side, in the parameter's SI unit.
     pub tolerance: f64,
     /// Cost.
     pub cost: f64,

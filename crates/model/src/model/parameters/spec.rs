@@ -22,7 +22,7 @@ pub struct Spec {
     pub class: Option<Node>,
     pub distribution: Option<Node>,
     pub cost: Option<Node>,
-    /// As the file has it, where value or deviation is replaced and a law or a cost of the file stays.
+    /// Spec of the file, if value or deviation is replaced and a law or a cost of the file stays.
     pub before: Option<Box<Spec>>,
     /// The deviation is given twice, which has been reported; there is none to go on with.
     pub contradictory: bool,

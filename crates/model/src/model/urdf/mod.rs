@@ -53,7 +53,7 @@ pub struct Urdf {
     of_links: Vec<Entry>,
 }
 
-/// With its bodies and joints in the model.
+/// A robot with its bodies and joints in the model.
 pub struct DeclaredRobot {
     urdf: Urdf,
     named: HashSet<String>,

@@ -11,7 +11,7 @@ use crate::syntax::within::AllowedFolders;
 /// Meshes of the file.
 pub struct Meshes<'i> {
     pub files: &'i AllowedFolders,
-    /// That of the file, and of its meshes in it.
+    /// Folder of the file, and of its meshes in it.
     pub folder: PathBuf,
     pub meshdir: PathBuf,
     /// Whether only the last part of a file's name counts.

@@ -48,7 +48,7 @@ pub struct CouplingReader<'r, 'i, 'd> {
     pub robot: &'r mut Robot,
     names: &'r Names,
     prefix: &'r str,
-    /// By the names of the file.
+    /// Tendons by the names of the file.
     tendons: HashMap<String, usize>,
     taken: HashSet<String>,
 }

@@ -18,11 +18,11 @@ pub struct Robot {
 }
 
 pub struct Body {
-    /// In formulas.
+    /// Name in formulas.
     pub name: String,
     pub span: Span,
     pub parent: usize,
-    /// In the parent's frame, m; rotation into it.
+    /// Position in the parent's frame, m; rotation into it.
     pub position: [Number; 3],
     pub rotation: Quaternion,
     pub mass: Option<Mass>,
@@ -42,7 +42,7 @@ pub struct Site {
 pub struct Mass {
     pub mass: Number,
     pub center: [Number; 3],
-    /// From the frame of the inertia to the body's.
+    /// Rotation from the frame of the inertia to the body's.
     pub rotation: Quaternion,
     /// xx, yy, zz, xy, xz, yz about the centre of mass.
     pub inertia: [Number; 6],
@@ -63,7 +63,7 @@ pub struct Joint {
     pub span: Span,
     pub kind: MjcfType,
     pub body: usize,
-    /// In the body's frame.
+    /// Position in the body's frame.
     pub position: [f64; 3],
     /// Unit vector.
     pub axis: [f64; 3],
@@ -77,7 +77,7 @@ pub struct Joint {
     pub reference: f64,
     /// Less the reference.
     pub range: Option<[Number; 2]>,
-    /// Between which the force of its actuators stays.
+    /// Range in which the force of its actuators stays.
     pub force_range: Option<[f64; 2]>,
     /// Time constant and damping ratio from which stiffness and damping follow.
     pub spring_damper: Option<[f64; 2]>,

@@ -23,9 +23,9 @@ use crate::robots::algebra::{self, Pose, Value, Vector};
 /// A velocity of one joint, in the world.
 struct Degree {
     joint: usize,
-    /// Along or about it.
+    /// Axis, along or about which it moves.
     axis: Vector3<f64>,
-    /// On the axis, where it turns.
+    /// Point on the axis, if it turns.
     about: Option<Vector3<f64>>,
 }
 

@@ -56,7 +56,7 @@ pub enum VisualShape {
     Sphere(f64),
     /// A mesh of a file.
     Mesh {
-        /// As the robot's file names it.
+        /// Name in the robot's file.
         file: String,
         /// Factors along x, y and z.
         scale: [f64; 3],
@@ -112,7 +112,7 @@ pub struct Joint {
     pub parent: usize,
     pub child: usize,
     pub origin: Origin,
-    /// In the child's frame; of any length but zero.
+    /// Axis in the child's frame; of any length but zero.
     pub axis: [f64; 3],
     pub damping: Number,
     pub friction: Number,
