@@ -90,8 +90,8 @@ pub fn help(unit: &Unit, name: &str, passes: impl Fn(&Variable) -> bool) -> Opti
     suggest::help(name, "variables of that kind in the unit", known)
 }
 
-/// The model's tree with start values of the unit in parameters that deviate from them; `None` where the unit cannot
-/// be read.
+/// The model's tree with start values of the unit in parameters that deviate from them; `None` if the unit cannot be
+/// read.
 pub fn write_out(report: &mut Report, root: &Node) -> Option<Node> {
     let section = root.get("black_box");
     let Some(file) = section.and_then(|section| section.get("fmu")) else { return Some(root.clone()) };

@@ -1,4 +1,4 @@
-//! Laws of parameters, statistics and what tolerances cost.
+//! Laws of parameters, statistics and costs of tolerances.
 
 use indexmap::IndexMap;
 use schemars::JsonSchema;

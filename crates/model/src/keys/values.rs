@@ -83,7 +83,7 @@ schema_only! {
         WithRate([Number; 3]),
     }
 
-    /// A place in a body's frame, or a frame there.
+    /// A position in a body's frame, or a frame there.
     #[schemars(untagged, inline)]
     pub enum PointFile {
         At(Components),

@@ -19,7 +19,7 @@ use crate::syntax::yaml::{Entry, Value};
 /// Keys of rigid bodies that mean nothing here.
 const RIGID: [&str; 7] = ["mass", "inertia", "center_of_mass", "coordinates", "held", "points", "shape"];
 
-/// Number of elements of the beam that a body's entry describes; `None` where it describes a rigid body.
+/// Number of elements of the beam that a body's entry describes; `None` if it describes a rigid body.
 pub fn elements(entry: &Entry) -> Option<usize> {
     let find = |value: &Value, key: &str| match value {
         Value::Mapping(fields) => fields.iter().position(|field| field.key == key),

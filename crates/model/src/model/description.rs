@@ -1,4 +1,4 @@
-//! The typed model: what a file says, checked, with every name resolved and every number in SI units.
+//! The typed model: contents of a file, checked, with every name resolved and every number in SI units.
 
 mod analysis;
 mod black_box;
@@ -108,7 +108,7 @@ impl Space {
 pub struct Parameter {
     /// Its name in formulas.
     pub name: String,
-    /// SI unit for people, e.g. `m` or `N*s/m`; empty where none was given.
+    /// SI unit for people, e.g. `m` or `N*s/m`; empty if none was given.
     pub unit: String,
     /// Kind of the joint.
     pub value: ParameterValue,
@@ -162,7 +162,7 @@ pub struct Output {
     pub name: String,
     /// Formula over names of [`Description::symbol`].
     pub formula: Formula,
-    /// SI unit derived from the formula, for axes; empty where dimensionless or unknown.
+    /// SI unit derived from the formula, for axes; empty if dimensionless or unknown.
     pub unit: String,
     /// Dimension; `None` if unknown.
     pub dimension: Option<Dimension>,

@@ -10,7 +10,7 @@ use crate::syntax::{Code, Coded};
 pub struct Reading {
     /// The model itself, unless it or a scene of it has errors.
     pub description: Option<Description>,
-    /// Its scenes, each a model of its own; none where there are errors.
+    /// Its scenes, each a model of its own; none if there are errors.
     pub scenes: Vec<Scene>,
     /// Errors and warnings.
     pub diagnostics: Diagnostics,

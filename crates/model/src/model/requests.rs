@@ -109,7 +109,7 @@ fn start_symbol(reader: &mut Reader, entry: &Entry) -> Option<Symbol> {
     found
 }
 
-/// `body.orientation`, `body.omega` and `body.omega_body`; nothing where the name is another.
+/// Reads `body.orientation`, `body.omega` and `body.omega_body`; `None` for any other name.
 fn rotation_value(reader: &mut Reader, entry: &Entry, velocities: bool) -> Option<Option<StartValue>> {
     let (owner, part) = entry.key.rsplit_once('.')?;
     let velocity = ANGULAR_MOTIONS.iter().find(|(name, _, order)| *name == part && *order == TimeOrder::Velocity);
@@ -176,7 +176,7 @@ pub fn outputs(reader: &mut Reader, entries: &[Entry]) {
 }
 
 /// The outputs that stand for `body.omega` (`NAME_x`, `NAME_y`, `NAME_z`), `body.alpha` and `body.orientation`
-/// (`NAME_roll`, …); nothing where the value is another.
+/// (`NAME_roll`, …); `None` for any other value.
 fn parts(reader: &Reader, entry: &Entry) -> Option<Vec<Output>> {
     let text = entry.value.scalar()?.text.trim();
     let (owner, vector) = text.rsplit_once('.')?;

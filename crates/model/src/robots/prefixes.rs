@@ -17,8 +17,8 @@ pub struct WithPrefixes {
     pub length: usize,
 }
 
-/// The text with a declaration of each prefix that another program's parts have without one; nothing where the first
-/// error of it is another.
+/// The text with a declaration of each prefix that another program's parts have without one; `None` if its first error
+/// is another.
 pub fn declared(text: &str, first: &Error, error_of: fn(&str) -> Option<Error>) -> Option<WithPrefixes> {
     let at = name_end(text)?;
     let mut prefixes: Vec<String> = vec![foreign(first)?];

@@ -5,7 +5,7 @@
 //! ```
 //!
 //! c is the radial clearance, which may be uncertain, r the journal's radius, at which friction acts. In space only
-//! displacements across the axis are felt; another joint holds what moves along it or tilts. K of two cylinders' ends
+//! displacements across the axis are felt; another joint prevents motion along it and tilts. K of two cylinders' ends
 //! as spheres (Lankarani & Nikravesh, J. Mech. Des. 112 (1990) 369): 4/(3 (h₁ + h₂)) √(R r/(R − r)), h = (1 − ν²)/E.
 
 use mbint_derive::Element;

@@ -134,7 +134,7 @@ pub struct StateVariable<'a> {
     pub sensor: Sensor,
     /// Its value at the start, of parameters.
     pub initial: &'a Formula,
-    /// Time between the instants at which it changes, s; `None` where it does so at a rate.
+    /// Time between the instants at which it changes, s; `None` if it changes at a rate.
     pub period: Option<f64>,
 }
 

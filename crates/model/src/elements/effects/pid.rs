@@ -3,7 +3,7 @@
 //!
 //! ```text
 //! e = target − s,   u = k_p e + I + k_d d,   f = sat(u)          N or N m, pushes s up
-//! İ = k_i e + (f − u)/T_t                                        T_t = k_p/k_i where nothing else is said
+//! İ = k_i e + (f − u)/T_t                                        T_t = k_p/k_i unless given
 //! d = ė, or with a filter of the time constant T_f:   ḋ = (ė − d)/T_f
 //! ```
 //!

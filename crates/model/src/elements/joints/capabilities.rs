@@ -28,7 +28,7 @@ pub trait JointElement: Element + Joint {
 /// One or several constraints of a joint, for people.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct RowDocs {
-    /// Their names, as in `pin.x`; empty where the joint has one alone.
+    /// Their names, as in `pin.x`; empty if the joint has one alone.
     pub name: &'static str,
     /// Unit of the residual.
     pub unit: &'static str,
@@ -38,7 +38,7 @@ pub struct RowDocs {
 
 /// A joint, as the stages see it. What a kind does not say has the default: it has not that capability.
 pub trait Joint: Debug {
-    /// The points A and B that it is between; `None` where it acts on coordinates alone.
+    /// The points A and B that it is between; `None` if it acts on coordinates alone.
     fn between(&self) -> Option<[PointRef; 2]> {
         None
     }

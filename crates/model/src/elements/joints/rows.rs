@@ -23,7 +23,7 @@ use crate::multibody::{BuildError, Pair, Vector};
 /// same point (but for gears and racks).
 #[derive(Clone, Copy, Debug)]
 pub struct Row<'g> {
-    /// Distinguishes it from the joint's other rows; empty where there are none.
+    /// Distinguishes it from the joint's other rows; empty if there are none.
     pub name: &'static str,
     /// Φ, m or rad; Ψ, m/s, of a velocity constraint.
     pub value: Scalar<'g>,

@@ -36,7 +36,7 @@ pub fn model_of(path: &Path) -> String {
     format!("mjcf: '{file}'\nsimulation: {{ duration: 1, step: 1e-3, output_step: 0.01 }}\n")
 }
 
-/// The model's tree with the robot that it names written out; nothing where it names none.
+/// The model's tree with the robot that it names written out; `None` if it names none.
 pub fn write_out(report: &mut Report, root: &Node, model: &Path, overrides: &[(Override, Span)]) -> Option<Node> {
     let Value::Mapping(entries) = &root.value else { return None };
     let entry = entries.iter().find(|entry| entry.key == "mjcf")?;

@@ -16,7 +16,7 @@ pub struct Port {
     pub name: String,
     /// The body or the point that it is.
     pub target: String,
-    /// Where that is said.
+    /// Location of its entry.
     pub span: Span,
 }
 

@@ -82,7 +82,7 @@ impl Writer<'_, '_> {
         written
     }
 
-    /// An entry with a value, copied; nothing where the braces of its name are wrong, as is reported.
+    /// An entry with a value, copied; `None` if the braces of its name are wrong, which is reported.
     fn entry(&mut self, entry: &Entry, value: &Node, shift: usize, scope: Option<&Arc<Scope>>) -> Option<Entry> {
         let key_span = entry.key_span.start + shift..entry.key_span.end + shift;
         let value = self.node(value, shift, scope);

@@ -46,7 +46,7 @@ pub struct Body {
     pub center_of_mass: Option<[Formula; 3]>,
     /// The coordinates that the body has; the others are prescribed. Empty for the ground.
     pub coordinates: Vec<Coordinate>,
-    /// Values of coordinates that the body does not have (zero where not named).
+    /// Values of coordinates that the body does not have (zero if not named).
     pub prescribed: Vec<(Coordinate, Formula)>,
     /// Orientation of a body that does not turn, if it is more than an angle about z.
     pub prescribed_orientation: Option<Rotation>,

@@ -12,7 +12,7 @@ pub struct ReducedOutput {
     pub name: String,
     /// Its definition in the file: `max of pin.force`.
     pub text: String,
-    /// SI unit; empty where dimensionless or unknown.
+    /// SI unit; empty if dimensionless or unknown.
     pub unit: String,
     /// Dimension; `None` if unknown.
     pub dimension: Option<Dimension>,
@@ -71,17 +71,17 @@ pub enum ReducedKind {
 pub struct Requirement {
     /// Its name.
     pub name: String,
-    /// Text of the file.
+    /// Its text in the file.
     pub text: String,
-    /// SI unit of the slacks; empty where dimensionless or unknown.
+    /// SI unit of the slacks; empty if dimensionless or unknown.
     pub unit: String,
-    /// The unit in which people see the slacks, where the limited quantity has one.
+    /// The unit in which people see the slacks, if the limited quantity has one.
     pub display: Option<DisplayUnit>,
     /// Distance of the limits from the limited quantity.
     pub slacks: Vec<Formula>,
     /// Indices of these among the outputs, once they are there.
     pub outputs: Vec<usize>,
-    /// When they count; `None` where they are of reduced outputs and parameters, by their names.
+    /// Interval of time in which they count; `None` if they are of reduced outputs and parameters, by their names.
     pub times: Option<(f64, f64)>,
     /// Constant limits.
     pub limits: Vec<Limit>,

@@ -28,7 +28,7 @@ pub struct Statistics {
 pub struct Law {
     /// The law.
     pub distribution: Distribution,
-    /// Whether its standard deviation is a third of the tolerance, since nothing else is said.
+    /// Whether its standard deviation is a third of the tolerance, by default.
     pub by_tolerance: bool,
 }
 

@@ -98,7 +98,7 @@ fn friction<'r>(reader: &mut Reader, source: &ParsedUrdf<'r>, joint: &'r Joint, 
     effects
 }
 
-/// How stops of joints of a kind push back; nothing where there are none.
+/// How stops of joints of a kind push back; `None` if there are none.
 fn impact(reader: &mut Reader, source: &ParsedUrdf, node: &Node, at: &Span, kind: UrdfJointType) -> Option<Impact> {
     let coordinate = if kind.turns() { JointCoordinate::Angle } else { JointCoordinate::Displacement };
     if !source.robot.joints.iter().any(|joint| joint.kind == kind && is_limited(joint)) {

@@ -22,7 +22,7 @@ pub fn triangles(path: &Path, bytes: &[u8]) -> Option<Vec<Triangle>> {
     }
 }
 
-/// Triangles by the indices of their corners; none where a corner is not there.
+/// Triangles by the indices of their corners; `None` if a corner does not exist.
 pub fn indexed(corners: &[[f64; 3]], faces: impl Iterator<Item = [usize; 3]>) -> Option<Vec<Triangle>> {
     faces.map(|[a, b, c]| Some([*corners.get(a)?, *corners.get(b)?, *corners.get(c)?])).collect()
 }

@@ -205,7 +205,7 @@ impl CouplingReader<'_, '_, '_> {
     }
 }
 
-/// The numbers of an attribute, at least one; the default where there are none.
+/// The numbers of an attribute, at least one; the default if there are none.
 fn numbers(values: &mut Values, get: &dyn Fn(&Values, &str) -> Option<Attribute>, key: &str, default: f64) -> Vec<f64> {
     let given = get(values, key).and_then(|found| values.parsed(&found, 10));
     given.unwrap_or_else(|| vec![default])

@@ -182,7 +182,7 @@ fn of_unit_mass(shape: Shape, [a, b, c]: [f64; 3]) -> (f64, [f64; 3]) {
     }
 }
 
-/// All parts as one; nothing where there are none.
+/// All parts as one; `None` if there are none.
 pub fn solid(parts: &[MassPart]) -> Option<GeomMass> {
     if parts.is_empty() {
         return None;

@@ -367,7 +367,7 @@ fn by_axes([a, b, c, d, e, f]: [f64; 6]) -> Quaternion {
     of_columns([x, y, z]).map_or([0.0; 4].map(Value::Number), |q| q.map(Value::Number))
 }
 
-/// Euler parameters of a rotation by its columns; none where they are not finite.
+/// Euler parameters of a rotation by its columns; `None` if they are not finite.
 fn of_columns([x, y, z]: [[f64; 3]; 3]) -> Option<[f64; 4]> {
     if [x, y, z].iter().flatten().any(|part| !part.is_finite()) {
         return None;

@@ -41,7 +41,7 @@ pub(super) struct SpatialBeam<'g> {
     pub torsional: Scalar<'g>,
     /// EI about y and z, N m²
     pub bending: [Scalar<'g>; 2],
-    /// GA of shear, N; none where the beam does not shear.
+    /// Shear stiffness GA, N; `None` if the beam does not shear.
     pub shear: Option<Scalar<'g>>,
     /// s
     pub damping: Scalar<'g>,

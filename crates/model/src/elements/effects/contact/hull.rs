@@ -213,8 +213,8 @@ impl Hull {
     }
 }
 
-/// The faces of the convex hull of points, each with its corners in order, seen from outside; `None` where they lie in
-/// a plane.
+/// The faces of the convex hull of points, each with its corners in order, seen from outside; `None` if they lie in a
+/// plane.
 pub fn faces_of_hull(points: Vec<[f64; 3]>) -> Option<Vec<Vec<[f64; 3]>>> {
     let hull = Hull::of(points)?;
     let corners = |(index, face): (usize, &Face)| {
@@ -298,7 +298,7 @@ fn numbers<S: SymbolTable>(reader: &Reader<'_, S>, points: &Points) -> Option<Ve
     points.iter().map(number).collect()
 }
 
-/// How many edges the hull of points has; none where they make none.
+/// Number of edges of the hull of points; 0 if they make none.
 pub fn edges<S: SymbolTable>(reader: &Reader<'_, S>, points: &Points) -> usize {
     let hull = numbers(reader, points).filter(|points| (4..=TUNING.points_of_hull).contains(&points.len())).and_then(Hull::of);
     hull.map_or(0, |hull| hull.edges.len())

@@ -15,11 +15,11 @@
 //! ```
 //!
 //! f is that of `impact`, R_μ that of `dry_friction` under the load f, v_t the tangential part of the velocity of the
-//! second surface against the first. In space round surfaces are spheres, or cylinders with parallel axes where an axis
-//! is given: d is then taken across it. Centres that coincide have no direction between them: inside a hollow |d| is
-//! √(d² + ε²), ε = 10⁻⁴ (R − r), which moves the wall by half of 10⁻⁸ of the clearance. One round body in another, or
-//! two whose centres meet, is no contact that this can tell. Apart the force and its derivatives are exactly zero, and
-//! of a tile of samples that all are apart only the sign of the gap is computed: without a root, from squares.
+//! second surface against the first. In space round surfaces are spheres, or cylinders with parallel axes if an axis is
+//! given: d is then taken across it. Centres that coincide have no direction between them: inside a hollow |d| is
+//! √(d² + ε²), ε = 10⁻⁴ (R − r), which moves the wall by half of 10⁻⁸ of the clearance. A round body inside another, or
+//! two with coincident centres, is not recognised as a contact. Apart the force and its derivatives are exactly zero,
+//! and for a tile of samples that all are apart only the sign of the gap is computed: without a root, from squares.
 
 mod along_hull;
 mod arc;

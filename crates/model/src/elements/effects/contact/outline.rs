@@ -1,4 +1,4 @@
-//! Outlines in contact with a circle, sphere or point: straight edges and arcs, with what lies within a radius of them.
+//! Outlines in contact with a circle, sphere or point: straight edges and arcs, and all points within a radius of them.
 //!
 //! ```text
 //! edge from a along u, length L; w = p − a:    t = u · w,    h = u × w,    s = min(t, 0) + max(t − L, 0)
@@ -190,7 +190,7 @@ impl<'g> ContactEdges<'g> {
         if before.arc.is_none() && after.arc.is_none() {
             return inside;
         }
-        // Where an arc goes on as the edge before it did, there is no corner: rounding makes none.
+        // Where an arc continues in the direction of the edge before it, there is no corner: rounding makes none.
         inside - TUNING.smooth_corner * self.reach
     }
 

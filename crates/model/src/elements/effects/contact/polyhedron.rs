@@ -1,4 +1,4 @@
-//! Boxes and convex hulls of the second body, with what lies within its radius of them.
+//! Boxes and convex hulls of the second body, and all points within its radius of them.
 //!
 //! ```text
 //! plane, hollow      each corner
@@ -8,7 +8,7 @@
 //! ```
 //!
 //! Two convex polyhedra are nearest at a corner of one of them or where two edges cross. Where faces lie on one another
-//! these are the corners of what both faces share. Distances of edges have no sign: crossing edges may be as deep as
+//! these are the corners of the faces' common part. Distances of edges have no sign: edges that cross may be as deep as
 //! ρ + r. Each push is the gradient of an energy of its own distance, so that the sum keeps energy, also while a corner
 //! passes over an edge.
 

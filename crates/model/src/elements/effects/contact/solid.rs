@@ -1,4 +1,4 @@
-//! Solid surfaces in space: capsules and blocks, with what lies within a rounding of them.
+//! Solid surfaces in space: capsules and blocks, and all points within a rounding of them.
 //!
 //! ```text
 //! capsule from a along u, length L; w = p − a:    e = w − t u,    t = w · u within 0 … L
