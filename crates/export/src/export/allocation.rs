@@ -95,12 +95,12 @@ pub(super) fn piece(own: &AllocatedTolerance) -> String {
     )
 }
 
-/// A deviation's own unit, where no value stands before it.
+/// Unit of a deviation; empty if the deviation has no value.
 fn side<'u>(value: &str, unit: &'u str) -> &'u str {
     if value.is_empty() { unit } else { "" }
 }
 
-/// In which unit a tolerance is shown, and what one of the SI unit is in it: lengths of machines in mm.
+/// Scale and unit in which a tolerance is shown, one SI unit being `scale` of it: lengths of machines in mm.
 pub fn shown_unit(own: &AllocatedTolerance) -> (f64, &str) {
     if own.unit == "m" && own.after.above.max(own.after.below) < 0.1 { (1e3, "mm") } else { (1.0, &own.unit) }
 }

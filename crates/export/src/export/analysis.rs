@@ -9,7 +9,7 @@ use super::sweep::{Swept, SweptBounds, sweep_svg};
 use crate::numerics::BandError;
 use crate::results::{Band, Contribution, OutputBounds, ResponsePoint};
 
-/// What every line begins or ends with.
+/// Last columns of every table.
 const BOUNDS: [&str; 4] = ["method", "lower", "upper", "error"];
 
 /// Every output of one configuration: `output,unit,nominal,method,lower,upper,error`, a line for each method.
@@ -140,7 +140,7 @@ fn over_frequencies(
     }
 }
 
-/// A line for each method, or one where there is none.
+/// Writes a line for each method, or one line without bounds if there is no method.
 fn lines(
     writer: &mut csv::Writer<Vec<u8>>,
     begin: &[String],

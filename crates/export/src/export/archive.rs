@@ -8,10 +8,10 @@ use tempfile::NamedTempFile;
 
 use super::error::ExportError;
 
-/// Writes files, by their paths in it, into an archive that appears when it is whole.
+/// Writes files, given with their paths in the archive, into an archive that appears when it is complete.
 ///
 /// # Errors
-/// Where it cannot be written.
+/// If it cannot be written.
 pub fn write_archive(path: &Path, files: &[(String, Vec<u8>)]) -> Result<(), ExportError> {
     let failed = |source| ExportError::Write { path: path.to_owned(), source };
     let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));

@@ -11,7 +11,7 @@ use crate::results::Bounds;
 struct Column {
     /// Its heading.
     column: String,
-    /// What its numbers are: `time`, `nominal`, `lower`, `upper`, `error`, `unresolved`, `covered`.
+    /// Kind of its numbers: `time`, `nominal`, `lower`, `upper`, `error`, `unresolved`, `covered`.
     quantity: &'static str,
     /// SI unit; empty where dimensionless or unknown.
     unit: String,
@@ -25,8 +25,7 @@ struct Column {
 }
 
 /// The columns of `bounds.csv`, left to right, as a JSON array with an object for each: `column`, `quantity`, `unit`
-/// and, where they have one, `display` (the unit in which people see it, and what one of that is in SI), `output` and
-/// `method`.
+/// and, if they have one, `display` (the unit in which people see it, and its value in SI), `output` and `method`.
 ///
 /// # Errors
 /// Only if memory cannot be written to.

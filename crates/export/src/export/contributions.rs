@@ -46,23 +46,23 @@ const LEFT: f64 = 74.0;
 const TOP: f64 = 36.0;
 const BOTTOM: f64 = 50.0;
 
-/// The layer of what parameters have together.
+/// The layer of the parameters' interactions.
 const TOGETHER: Color = Color([190, 190, 190]);
 /// The layer of all other parameters.
 const OTHERS: Color = Color([120, 120, 120]);
 
 /// A layer of the stack.
 struct Layer {
-    /// As the groups and the legend have it.
+    /// Key of its group, as in the groups and the legend.
     group: String,
     label: String,
     color: Color,
-    /// Of the variance, 0 to 1.
+    /// Share of the variance, 0 to 1.
     share: Vec<f64>,
 }
 
-/// The parameters' shares of one output's variance over time, one upon the other, the largest lowest, and the legend
-/// beside them in the same order.
+/// The parameters' shares of one output's variance over time, stacked, the largest lowest, with the legend next to them
+/// in the same order.
 ///
 /// # Errors
 /// Only if memory cannot be written to.
@@ -111,8 +111,8 @@ pub fn contributions_svg(
     Ok(finished(&figure))
 }
 
-/// From the lowest to the highest: the parameters by their mean share, all others, and their interactions. Rows without
-/// variance or without known shares stay free.
+/// The layers from the lowest to the highest: the parameters by their mean share, all others, and their interactions.
+/// Rows without variance or without known shares stay empty.
 fn layers(contributions: &[Contribution], rows: usize) -> Vec<Layer> {
     let mut ranked: Vec<&Contribution> = contributions.iter().collect();
     let mean = |contribution: &Contribution| contribution.main.iter().filter(|share| share.is_finite()).sum::<f64>();

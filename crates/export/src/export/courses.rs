@@ -36,7 +36,7 @@ pub(super) struct BandedCourse<'a> {
     /// Label of the course; empty where the labels of its bands suffice.
     pub label: &'a str,
     pub hue: Hue,
-    /// Of the line, px.
+    /// Width of the line, px.
     pub width: f64,
     pub times: &'a [f64],
     pub nominal: &'a [f64],
@@ -45,23 +45,23 @@ pub(super) struct BandedCourse<'a> {
 
 /// A band of a course.
 pub(super) struct CourseBand<'a> {
-    /// As a course's.
+    /// Key of its group, as a course's.
     pub group: String,
     pub band: &'a Band,
     pub style: Style,
 }
 
-/// Name of the time, over which courses are unless they are over a parameter.
+/// Name of the time, the axis of courses unless they are over a parameter.
 pub(super) const TIME: &str = "t";
 
-/// What a figure's courses are over: the time, or a parameter.
+/// Horizontal axis of a figure's courses: the time, or a parameter.
 #[derive(Clone, Copy)]
 pub(super) struct Across<'a> {
     pub name: &'a str,
     pub unit: ShownUnit<'a>,
 }
 
-/// What a figure shows.
+/// Contents of a figure.
 #[derive(Clone, Copy)]
 pub(super) struct Shown<'a> {
     /// The output's name.
@@ -69,10 +69,10 @@ pub(super) struct Shown<'a> {
     /// The unit that it is shown in.
     pub unit: ShownUnit<'a>,
     pub across: Across<'a>,
-    /// What moves by less is a constant.
+    /// Range below which an output is constant, SI.
     pub noise: f64,
     pub courses: &'a [BandedCourse<'a>],
-    /// What requirements say of the output.
+    /// Limits that requirements set for the output.
     pub limits: &'a [Limit],
 }
 
@@ -171,7 +171,7 @@ impl<'a> Figure<'a> {
         Ok(figure.add(below.framed(title, &self.deviation.title(title), drawn)).add(below.time_axis(across.name)))
     }
 
-    /// All that is drawn in a panel: errors below, then bands, then the course.
+    /// All series of a panel: errors below, then bands, then the course.
     fn series<'b>(
         &self,
         panel: &Panel,
@@ -196,7 +196,7 @@ impl<'a> Figure<'a> {
         drawn
     }
 
-    /// Scales and series, for what shows the figure.
+    /// Scales and series, for the scripts that show the figure.
     fn data(&self, value: &Panel, below: Option<&Panel>) -> FigureData {
         let Shown { name, courses, across, .. } = *self.shown;
         let shared = courses.first().map_or(&[][..], |course| course.times);
@@ -260,7 +260,7 @@ fn error_id(panel: &Panel, of: &CourseBand) -> String {
     format!("{}-{}-error", panel.id, of.group)
 }
 
-/// For people: what a course's line is.
+/// Title of a course's line, for people.
 fn nominal_title(course: &BandedCourse) -> String {
     match (course.label, course.bands.first()) {
         ("", Some(of)) => format!("{}, nominal", of.style.label),
@@ -268,12 +268,12 @@ fn nominal_title(course: &BandedCourse) -> String {
     }
 }
 
-/// The nominal course, less itself: a line at zero with the same gaps.
+/// The nominal course minus itself: a line at zero with the same gaps.
 fn zero(course: &BandedCourse) -> Vec<f64> {
     course.nominal.iter().map(|x| if x.is_finite() { 0.0 } else { f64::NAN }).collect()
 }
 
-/// What the legend adds to a method's name.
+/// Addition to a method's name in the legend.
 fn note(beyond: bool, unresolved_from: Option<f64>, unit: ShownUnit) -> String {
     match (unresolved_from, beyond) {
         (Some(from), _) => {

@@ -7,7 +7,7 @@ use serde::Deserialize;
 use super::folder::settle;
 use super::owned::{SCENES, SUMMARY, is_plain, read};
 
-/// What a summary, or a list of scenes, says of an older run.
+/// Contents of a summary, or of a list of scenes, of an older run.
 #[derive(Default, Deserialize)]
 #[serde(default)]
 struct Earlier {
@@ -18,7 +18,7 @@ struct Earlier {
 }
 
 impl Earlier {
-    /// Nothing where there is no such file that can be read.
+    /// Contents of a file; empty if there is no such file that can be read.
     fn of(dir: &Path, file: &str) -> Self {
         read(&dir.join(file)).ok().and_then(|text| serde_json::from_slice(&text).ok()).unwrap_or_default()
     }
@@ -26,7 +26,7 @@ impl Earlier {
 
 /// Whether a folder holds the results of a run that was not interrupted.
 pub fn holds_complete_results(dir: &Path) -> bool {
-    // What a killed run left to do is done by who writes next, or reported there.
+    // The next writer completes the work that a killed run left, or reports it.
     let _ = settle(dir);
     let earlier = Earlier::of(dir, SUMMARY);
     !earlier.model.is_empty() && !earlier.interrupted

@@ -18,7 +18,7 @@ pub enum ExportError {
         /// Reason that the system gives.
         source: io::Error,
     },
-    /// Another run writes into the folder, and was not waited for.
+    /// Another run writes into the folder, and the caller did not wait for it.
     #[error("another run writes into the folder {}", path.display())]
     Held {
         /// The folder.

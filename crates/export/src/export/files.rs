@@ -23,10 +23,10 @@ use crate::export::{
 use crate::grammar::display_unit::DisplayUnit;
 use crate::results::{Bounds, ModelFile, OutputBounds, PeakSummary, Provenance, Summary};
 
-/// Writes `bounds.csv`, its `columns.json`, an SVG for each output, the parameters' contributions where they are known,
-/// what a report needs where there is to be one, and `summary.json` into `dir`, which is created if it does not exist.
+/// Writes `bounds.csv`, its `columns.json`, an SVG for each output, the parameters' contributions if they are known,
+/// the data of a report if there is to be one, and `summary.json` into `dir`, which is created if it does not exist.
 ///
-/// The files appear when all are written, `summary.json` last: where it exists, the others do. It lists them, and files
+/// The files appear when all are written, `summary.json` last: if it exists, so do the others. It lists them, and files
 /// that an older run wrote and this run does not write are removed. Returns the files written, in that order.
 ///
 /// # Errors
@@ -48,7 +48,7 @@ pub fn write_results(
 /// The same files in memory, each with its name.
 ///
 /// # Errors
-/// As for [`write_results`], but for the folder.
+/// As for [`write_results`], except those of the folder.
 pub fn result_files(
     bounds: &Bounds,
     summary: &Summary,
@@ -64,10 +64,10 @@ pub fn result_files(
     Ok(files)
 }
 
-/// Where a file goes, by its name.
+/// Takes a file, with its name and contents.
 type Add<'a> = dyn FnMut(&str, &[u8]) -> Result<(), ExportError> + 'a;
 
-/// Files that are added somewhere, with their names.
+/// Files passed to a destination, with their names.
 struct Added<'a> {
     names: Vec<String>,
     add: &'a mut Add<'a>,
@@ -190,7 +190,7 @@ fn add_results<'a>(
     let mut json = serde_json::to_vec_pretty(&written)?;
     json.push(b'\n');
     if let Some(motion) = motion.filter(|_| has_page) {
-        // Read as `mbint report` reads them, so that it writes the same page.
+        // Read in the same way as `mbint report` does, so that it writes the same page.
         let (summary, motion) = (serde_json::from_slice(&json)?, serde_json::from_slice(&motion)?);
         let name = written.summary.model.clone();
         let text = page(&name.clone(), &[PageScene { name, summary, motion, figures }]);
@@ -204,12 +204,12 @@ pub(super) fn response_svg(stem: &str) -> String {
     format!("response.{stem}.svg")
 }
 
-/// Stem of a file's name, where it is that of a response's plot.
+/// Stem of a file's name, if it is that of a response's plot.
 pub(super) fn stem_of_response(file: &str) -> Option<&str> {
     file.strip_prefix("response.")?.strip_suffix(".svg")
 }
 
-/// The summary as it is written.
+/// The summary in its file.
 #[derive(Serialize)]
 struct Written<'s> {
     schema: u32,
@@ -217,9 +217,9 @@ struct Written<'s> {
     summary: &'s Summary,
     #[serde(flatten)]
     provenance: &'s Provenance,
-    /// In the model's order, with SI units.
+    /// Outputs in the model's order, with SI units.
     outputs: Vec<Named>,
-    /// Of every band, in the output's unit.
+    /// Peaks of every band, in the output's unit.
     peaks: Vec<PeakSummary>,
     /// Whether the run was interrupted before it was done.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
@@ -233,7 +233,7 @@ struct Written<'s> {
 struct Named {
     name: String,
     unit: String,
-    /// The unit in which people see it, where the model names one.
+    /// The unit in which people see it, if the model names one.
     #[serde(skip_serializing_if = "Option::is_none")]
     display: Option<DisplayUnit>,
 }
@@ -318,7 +318,7 @@ mod tests {
     #[test]
     fn a_file_that_cannot_be_replaced_is_named_and_nothing_half_is_left() {
         let dir = tempfile::tempdir().unwrap();
-        // A folder stands where a file should.
+        // A folder has the name of a file.
         fs::create_dir(dir.path().join("x3.svg")).unwrap();
         let (bounds, summary) = results();
         let error = write_results(dir.path(), &bounds, &summary, &Provenance::default(), false, None).unwrap_err();
@@ -335,7 +335,7 @@ mod tests {
         let dir = tempfile::tempdir().unwrap();
         let (bounds, summary) = results();
         fs::set_permissions(dir.path(), fs::Permissions::from_mode(0o555)).unwrap();
-        // The superuser may write anywhere: nothing to see then.
+        // The superuser may write anywhere: no error then.
         if fs::write(dir.path().join("probe"), "").is_err() {
             let error = write_results(dir.path(), &bounds, &summary, &Provenance::default(), false, None).unwrap_err();
             let path = dir.path().display().to_string();

@@ -10,28 +10,27 @@ use super::owned::{OWNED, Owned, sha256};
 use super::replacing::{self, Replacement};
 use super::tuning::TUNING;
 
-/// Files that are written into a folder of their own within their destination, and replace older ones as one when all
+/// Files that are written into a folder of their own within their destination, and replace older ones together when all
 /// are written: neither a failure nor a killed run leaves a partial file; a full disk leaves older results unchanged;
-/// and of two runs into one folder, the files of one remain, not a mixture. None is open but that which is being
-/// written.
+/// and after two runs into one folder, the files of one remain, not a mixture. Only the file being written is open.
 ///
-/// The folder is locked meanwhile: temporary files that are there already are those of a run that was killed, and are
-/// removed.
+/// The folder is locked meanwhile: temporary files found in it belong to a run that was killed, and are removed.
 pub(super) struct AtomicFiles<'d> {
     dir: &'d Path,
     replacement: Replacement,
-    /// Their SHA-256.
+    /// SHA-256 of the files, by name.
     hashes: BTreeMap<String, String>,
-    /// Not every system opens folders, and not every file system locks: then the files of two runs may mix.
+    /// The folder, opened and locked. Not every system opens folders, and not every file system locks: then the files
+    /// of two runs may mix.
     folder: Option<fs::File>,
 }
 
-/// How temporary files are called.
+/// Prefix and suffix of temporary files.
 const TEMPORARY: (&str, &str) = (".mbint-", ".tmp");
 
 impl<'d> AtomicFiles<'d> {
-    /// An empty set, for a folder that is created if it does not exist. What a killed run left half replaced is
-    /// replaced.
+    /// An empty set, for a folder that is created if it does not exist. Completes a replacement that a killed run
+    /// began.
     ///
     /// # Errors
     /// As [`prepare_folder`], or if the files left there cannot be replaced.
@@ -64,8 +63,8 @@ impl<'d> AtomicFiles<'d> {
         self.replacement.names().to_vec()
     }
 
-    /// These files, all of which are there, replace all that older runs wrote into the folder and its scenes' folders
-    /// but for these.
+    /// Makes these files, all of which are added, replace all other files that older runs wrote into the folder and its
+    /// scenes' folders.
     ///
     /// # Errors
     /// If the list of our files cannot be written.
@@ -83,7 +82,7 @@ impl<'d> AtomicFiles<'d> {
         self.list(Owned { files: self.hashes.clone(), scenes })
     }
 
-    /// These files, all of which are there, are beside those that older runs wrote, and are as much ours.
+    /// Adds these files, all of which are added, to the list of files that older runs wrote.
     ///
     /// # Errors
     /// If the list of our files cannot be written.
@@ -100,34 +99,34 @@ impl<'d> AtomicFiles<'d> {
     /// Replaces older files by these, in the order in which they were added.
     ///
     /// # Errors
-    /// At the first that cannot be replaced; all are then as they were.
+    /// At the first file that cannot be replaced; all are then restored.
     pub fn put_in_place(self) -> Result<Vec<PathBuf>, ExportError> {
         let names = self.names();
         self.replacement.begin(self.dir)?;
         replacing::finish(self.dir)?;
-        // Not every system writes folders to the disk.
+        // Not every system flushes folders to the disk.
         let _ = self.folder.as_ref().map(fs::File::sync_all);
         Ok(names.iter().filter(|name| *name != OWNED).map(|name| self.dir.join(name)).collect())
     }
 }
 
-/// Ends what a killed run began: its files are all there, but not yet all under their names. Waits for a run that is at
-/// it.
+/// Completes the replacement of a killed run: its files are all written, but not all have their names yet. Waits for a
+/// run that writes now.
 ///
 /// # Errors
-/// Where a file cannot be replaced.
+/// If a file cannot be replaced.
 pub(super) fn settle(dir: &Path) -> Result<(), ExportError> {
     let folder = fs::File::open(dir).ok();
     let _locked = folder.as_ref().is_some_and(|folder| folder.lock().is_ok());
     replacing::finish(dir)
 }
 
-/// Waits while another run writes into a folder; `waits` is asked every tenth of a second whether to go on waiting.
+/// Waits while another run writes into a folder; asks `waits` every tenth of a second whether to continue.
 ///
 /// # Errors
-/// If it is not to go on.
+/// If `waits` returns `false`.
 pub fn wait_for_folder(dir: &Path, waits: &mut dyn FnMut() -> bool) -> Result<(), ExportError> {
-    // What cannot be opened or locked is not waited for.
+    // Without access or locks there is no waiting.
     let Ok(folder) = fs::File::open(dir) else { return Ok(()) };
     while let Err(fs::TryLockError::WouldBlock) = folder.try_lock() {
         if !waits() {
@@ -141,7 +140,7 @@ pub fn wait_for_folder(dir: &Path, waits: &mut dyn FnMut() -> bool) -> Result<()
 /// Writes texts under their names into a folder, which is created if it does not exist. Returns their paths.
 ///
 /// # Errors
-/// At the first that cannot be written.
+/// At the first file that cannot be written.
 pub fn write_pages(dir: &Path, pages: &[(String, String)]) -> Result<Vec<PathBuf>, ExportError> {
     let mut files = AtomicFiles::in_folder(dir)?;
     for (name, text) in pages {
@@ -158,7 +157,7 @@ pub fn write_pages(dir: &Path, pages: &[(String, String)]) -> Result<Vec<PathBuf
 pub fn prepare_folder(dir: &Path) -> Result<(), ExportError> {
     let folder = |source| ExportError::Folder { path: dir.to_owned(), source };
     if dir.exists() && !dir.is_dir() {
-        // The system would say "File exists".
+        // The system's message would be "File exists".
         return Err(folder(io::ErrorKind::NotADirectory.into()));
     }
     fs::create_dir_all(dir).map_err(folder)?;
@@ -186,7 +185,8 @@ fn temporary() -> tempfile::Builder<'static, 'static> {
     builder
 }
 
-/// The error without the temporary path that tempfile adds to it, and without the kind's name where that says nothing.
+/// The error without the temporary path that tempfile adds to it, and without the kind's name if that carries no
+/// information.
 fn plain(error: io::Error) -> io::Error {
     let kind = error.kind();
     match error.to_string().split_once(" at path ") {
@@ -257,7 +257,7 @@ mod tests {
         assert_eq!(names(dir), ["a.csv", "edited.svg", "mine.tmp", "two"]);
     }
 
-    /// Whoever writes such a list names files that mbint did not write, or paths elsewhere.
+    /// Such a list by others names files that mbint did not write, or paths elsewhere.
     #[test]
     fn a_list_by_others_removes_nothing() {
         let dir = tempfile::tempdir().unwrap();

@@ -1,5 +1,5 @@
-//! `witness.NAME.csv`: the functions of excitations under which an output or a reduced output goes the furthest,
-//! or a requirement fails.
+//! `witness.NAME.csv`: the functions of excitations under which an output or a reduced output moves farthest, or a
+//! requirement fails.
 
 use crate::grammar::display_unit::ShownUnit;
 use crate::model::deviation_of;
@@ -8,7 +8,7 @@ use crate::results::{FunctionWitness, ParameterSummary};
 use super::csv::number;
 
 /// A table with a column for each excitation, which `mbint run --witness` replays and `tables` read (`interpolation:
-/// linear`). Comments name the output, and have the values of parameters.
+/// linear`). Comments name the output, and give the values of parameters.
 pub fn function_witness_csv(witness: &FunctionWitness, parameters: &[ParameterSummary]) -> String {
     let unit = ShownUnit::of(&witness.display, &witness.unit);
     let value = number(unit.of_si(witness.value));
@@ -16,7 +16,7 @@ pub fn function_witness_csv(witness: &FunctionWitness, parameters: &[ParameterSu
     let value = format!("{value} {}", unit.text);
     let mut text = format!("# {} is {}{time} under these functions\n", witness.name, value.trim_end());
     for (parameter, value) in parameters.iter().zip(&witness.parameters) {
-        // What an excitation is as a constant has no value here.
+        // Constant deviations of these excitations have no value here.
         let is_excitation = witness.functions.iter().any(|own| parameter.name == deviation_of(&own.name));
         if !is_excitation {
             text += &format!("# parameter {} = {}\n", parameter.name, number(*value));

@@ -72,8 +72,8 @@ pub fn gradients_csv(gradients: &Gradients) -> Result<Vec<u8>, csv::Error> {
     writer.into_inner().map_err(|error| error.into_error().into())
 }
 
-/// Parameters by their influence on a number, the largest first: number, derivative (SI), and that times half of the
-/// interval. Parameters without influence are left out.
+/// Parameters by their influence on a number, the largest first: index, derivative (SI), and derivative times half of
+/// the interval. Parameters without influence are omitted.
 pub fn by_influence(parameters: &[GradientParameter], by_parameters: &[f64]) -> Vec<(usize, f64, f64)> {
     let derivatives = by_parameters.iter().zip(parameters).enumerate();
     let influences = derivatives.map(|(number, (&by, parameter))| (number, by, by * parameter.half_width));

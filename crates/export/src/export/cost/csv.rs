@@ -75,8 +75,8 @@ fn record(of: &str, point: &CostPoint) -> [String; COLUMNS.len()] {
     ]
 }
 
-/// Writes `cost.csv` and `cost.svg` into `dir`, each whole or not at all. They hold seconds, and so differ from run to
-/// run.
+/// Writes `cost.csv` and `cost.svg` into `dir`, each completely or not at all. They contain seconds, and so differ from
+/// run to run.
 ///
 /// # Errors
 /// At the first file that cannot be written.

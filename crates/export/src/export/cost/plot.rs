@@ -1,7 +1,7 @@
 //! `cost.svg`: error against seconds, both logarithmic; bounds on the left, nominal trajectories on the right.
 //!
-//! Every setting is a dot, hollow where its bounds leave out more than they are too wide. A method's line joins the
-//! settings on its own Pareto front; the thick grey line is the front of all methods.
+//! Every setting is a dot, hollow if its bounds miss more than they overestimate. A method's line joins the settings on
+//! its own Pareto front; the thick grey line is the front of all methods.
 
 use svg::node::element::{Circle, Group, Path, Rectangle, Title};
 
@@ -24,20 +24,20 @@ const BOTTOM: f64 = 54.0;
 const LEFT: f64 = 70.0;
 /// Space on the right of each panel, px.
 const RIGHT: f64 = 18.0;
-/// What the front of all methods is.
+/// Text of the legend for the front of all methods.
 const CHEAPEST: &str = "no other is cheaper and as good";
 /// Rows of the legend.
 const ROWS: usize = 5;
-/// From one line of the legend to the next, px.
+/// Distance from one line of the legend to the next, px.
 const LINE: f64 = 18.0;
-/// From one column of the legend to the next, px.
+/// Distance from one column of the legend to the next, px.
 const COLUMN: f64 = 214.0;
 /// A dot's radius, px.
 const DOT: f64 = 3.4;
 /// The front of all methods.
 const FRONT: Color = Color([190, 190, 190]);
 
-/// The colours of the plots of bounds, and others that are apart from them for every colour vision.
+/// The colours of the plots of bounds, and others that every colour vision distinguishes from them.
 fn color(method: CostMethod) -> Color {
     match method {
         CostMethod::Bounds(curve) => Color(curve.about().color),
@@ -92,7 +92,7 @@ pub fn cost_svg(study: &CostStudy) -> String {
     finished(&figure)
 }
 
-/// Settings without a result have no place in the plot.
+/// Whether a setting is in the plot: settings without a result are not.
 fn is_shown(point: &CostPoint) -> bool {
     point.deviation.largest().is_finite() && point.seconds > 0.0
 }
@@ -177,7 +177,7 @@ impl Panel {
         })
     }
 
-    /// Rows of methods, and what the front and hollow marks mean.
+    /// Rows of methods, and the meaning of the front and of hollow marks.
     fn legend(&self, points: &[CostPoint]) -> Group {
         let mut legend = group("legend");
         for (entry, method) in cost_curves(points).into_iter().enumerate() {
@@ -210,7 +210,7 @@ impl Panel {
     }
 }
 
-/// A mark whose shape tells the methods apart beside their colours.
+/// A mark whose shape distinguishes the methods in addition to their colours.
 fn mark((x, y): Point, entry: usize, hollow: bool) -> Group {
     let class = if hollow { "hollow" } else { "area" };
     let shape = |corners: &[Point]| {

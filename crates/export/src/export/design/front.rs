@@ -21,7 +21,7 @@ pub(super) fn table(design: &DesignStudy) -> Result<Vec<u8>, csv::Error> {
     writer.into_inner().map_err(|error| error.into_error().into())
 }
 
-/// The front, beside the best point where that has another objective.
+/// The front, with the best point in addition if that has another objective.
 pub(super) fn drawn(design: &DesignStudy) -> String {
     let at = |own: &DesignTrade| (100.0 * own.margin, own.cost);
     let line: Vec<(f64, f64)> = design.front.iter().map(at).collect();

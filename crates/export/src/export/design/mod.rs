@@ -81,7 +81,7 @@ fn table(design: &DesignStudy) -> Result<Vec<u8>, csv::Error> {
     writer.into_inner().map_err(|error| error.into_error().into())
 }
 
-/// What the points are good for.
+/// Criterion of the design, in words.
 fn criterion(design: &DesignStudy) -> String {
     match design.criterion {
         Criterion::WorstCase => "every case within the tolerances".to_owned(),

@@ -105,7 +105,7 @@ fn requirements(best: &DesignPoint) -> Section {
     Section::Table("Requirements at the optimum", headings, best.requirements.iter().map(row).collect())
 }
 
-/// What the tolerances may become at the optimum.
+/// Tolerances, grades and costs at the optimum, before and after the allocation.
 fn allocated(allocation: &Allocation) -> Section {
     let row = |own: &crate::results::AllocatedTolerance| {
         let (scale, unit) = shown_unit(own);

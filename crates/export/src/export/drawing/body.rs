@@ -9,14 +9,14 @@ use super::view::{Px, View};
 use super::{AddAll, solid};
 use crate::results::{Drawing, DrawnBody};
 
-/// Of a body without a shape and with one place only, px: wide enough to be seen with the mark of its centre of mass in
-/// it.
+/// Size of a body without a shape and with one point only, px: wide enough to be seen with the mark of its centre of
+/// mass in it.
 const BLOCK: [f64; 2] = [44.0, 28.0];
 
 /// Number of colours.
 const COLORS: usize = 6;
 
-/// Where a body is seen: its points, and its centre of mass where it has fewer than two.
+/// Points at which a body is drawn: its own, and its centre of mass if it has fewer than two.
 pub(super) fn places(body: &DrawnBody) -> Vec<[f64; 3]> {
     let mut places: Vec<[f64; 3]> = body.points.iter().map(|point| point.position).collect();
     if places.len() < 2 {
@@ -38,7 +38,7 @@ pub(super) fn body(drawing: &Drawing, index: usize, view: &View) -> Group {
     let shapes: Vec<Group> = own.filter_map(|solid| solid::solid(solid, drawing, view)).collect();
     let surfaces: Vec<Group> = surfaces.filter_map(|solid| solid::solid(solid, drawing, view)).collect();
     let corners = hull(places(body).iter().map(|&place| view.px(place)).collect());
-    // A surface is what a body looks like that has but one place.
+    // A surface represents a body that has only one point.
     let is_seen = !shapes.is_empty() || !surfaces.is_empty() && corners.len() < 2;
     let group = if is_seen { group } else { by_places(group, body, &corners, view) };
     let group = group.add_all(shapes).add_all(surfaces);
@@ -63,7 +63,8 @@ fn by_places(group: Group, body: &DrawnBody, corners: &[Px], view: &View) -> Gro
     }
 }
 
-/// The x axis of a body in the plane; horizontal in space, where one place has no direction to be seen from every side.
+/// The x axis of a body in the plane; horizontal in space, where a single point has no direction visible from every
+/// side.
 fn own_axis(body: &DrawnBody, view: &View) -> Px {
     let (sin, cos) = body.angle.map_or((0.0, 1.0), |angle| (symdiff::math::sin(angle), symdiff::math::cos(angle)));
     view.direction([cos, sin, 0.0]).unwrap_or_else(|| Px::new(1.0, 0.0))

@@ -23,7 +23,7 @@ pub(super) fn px(value: f64) -> f64 {
     (10.0 * value).round() / 10.0 + 0.0
 }
 
-/// The symbol of an element; `None` where it has none or no place.
+/// The symbol of an element; `None` if it has no symbol or no ends.
 pub(super) fn glyph(element: &DrawnElement, view: &View) -> Option<Group> {
     let ends: Vec<Px> = element.ends.iter().map(|&end| view.px(end)).collect();
     let (&first, &last) = (ends.first()?, ends.last()?);
@@ -73,7 +73,7 @@ pub(super) fn glyph(element: &DrawnElement, view: &View) -> Option<Group> {
     Some(drawn.set("class", "element"))
 }
 
-/// Hatching on the ground's side of a place.
+/// Hatching on the ground's side of a point.
 pub(super) fn hatching(at: Px, along: Px) -> Group {
     let down = if across(along).y >= 0.0 { across(along) } else { -across(along) };
     let middle = at + 9.0 * down;
@@ -104,12 +104,12 @@ pub(super) fn line(from: Px, to: Px) -> Line {
     Line::new().set("x1", px(from.x)).set("y1", px(from.y)).set("x2", px(to.x)).set("y2", px(to.y))
 }
 
-/// Turned by a right angle.
+/// A direction turned by a right angle.
 pub(super) fn across(along: Px) -> Px {
     Px::new(-along.y, along.x)
 }
 
-/// A place in a path.
+/// A point of a path.
 pub(super) fn pair(at: Px) -> (f64, f64) {
     (px(at.x), px(at.y))
 }
@@ -118,7 +118,7 @@ fn circle(at: Px, radius: f64) -> Circle {
     Circle::new().set("cx", px(at.x)).set("cy", px(at.y)).set("r", radius)
 }
 
-/// A rectangle about a place, turned to a direction.
+/// A rectangle about a point, turned to a direction.
 pub(super) fn block(at: Px, along: Px, size: Px) -> Rectangle {
     let turned = [along.x, along.y, -along.y, along.x].map(|entry| format!("{:.4}", entry + 0.0));
     Rectangle::new()
@@ -133,7 +133,7 @@ fn guide(group: Group, through: Px, along: Px) -> Group {
     group.add(line(through - GUIDE * along, through + GUIDE * along).set("class", "thin"))
 }
 
-/// Three quarters of a circle about a place, with a head.
+/// Three quarters of a circle about a point, with a head.
 fn bent_arrow(group: Group, about: Px, radius: f64) -> Group {
     let (start, end) = (about + Px::new(radius, 0.0), about + Px::new(0.0, radius));
     let arc = Data::new().move_to(pair(start)).elliptical_arc_to((radius, radius, 0, 1, 0, px(end.x), px(end.y)));

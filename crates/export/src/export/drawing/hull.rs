@@ -4,7 +4,7 @@ use super::view::Px;
 use crate::export::tuning::TUNING;
 
 /// The corners of the convex hull, in order (Andrew's monotone chain, Inf. Process. Lett. 9 (1979) 216); both ends of
-/// places on a line.
+/// collinear points.
 pub(super) fn hull(mut places: Vec<Px>) -> Vec<Px> {
     places.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
     places.dedup_by(|a, b| (*a - *b).norm() < TUNING.same_point);
@@ -31,7 +31,7 @@ pub(super) fn hull(mut places: Vec<Px>) -> Vec<Px> {
 
 /// The corners in x and y of the convex hull of points, in order.
 pub(in crate::export) fn flat_hull(points: &[[f64; 3]]) -> Vec<[f64; 3]> {
-    // By thousandths of their size, which are told apart as px are.
+    // Scaled to 1e4 px, since `hull` distinguishes points by px.
     let size = points.iter().flatten().fold(0.0_f64, |size, part| size.max(part.abs()));
     let scale = 1e4 / size.max(f64::MIN_POSITIVE);
     let corners = hull(points.iter().map(|[x, y, _]| scale * Px::new(*x, *y)).collect());

@@ -1,4 +1,4 @@
-//! Labels beside their points, not on one another.
+//! Labels next to their points, without overlap.
 
 use svg::node::element::Text;
 
@@ -17,7 +17,7 @@ pub(super) struct Labels {
 }
 
 impl Labels {
-    /// A name beside a place, rather in the direction `away`; `None` where there is no room, or it stands there
+    /// A name next to a point, preferably in the direction `away`; `None` if there is no room, or if the name is there
     /// already.
     pub fn beside(&mut self, at: Px, away: Px, name: &str, size: f64, class: &str) -> Option<Text> {
         if self.named.iter().any(|(known, place)| known == name && (place - at).norm() < 3.0) {
@@ -27,7 +27,7 @@ impl Labels {
         let mut directions: Vec<Px> = [(1, 0), (1, -1), (0, -1), (-1, -1), (-1, 0), (-1, 1), (0, 1), (1, 1)]
             .map(|(x, y)| Px::new(f64::from(x), f64::from(y)))
             .to_vec();
-        // Stable, so that equals keep their order.
+        // Stable, so that equal directions stay in order.
         directions.sort_by(|a, b| b.normalize().dot(&away).total_cmp(&a.normalize().dot(&away)));
         let rectangle = |direction: &Px, distance: f64| {
             let middle = at + direction.component_mul(&(0.5 * extent)) + distance * direction.normalize();
@@ -49,7 +49,7 @@ impl Labels {
         )
     }
 
-    /// Keeps names off a place.
+    /// Keeps names off a square about a point.
     pub fn occupy(&mut self, at: Px, half: f64) {
         self.taken.push([at - Px::repeat(half), at + Px::repeat(half)]);
     }

@@ -24,8 +24,7 @@ use super::tuning::TUNING;
 use crate::elements::Glyph;
 use crate::results::{Drawing, DrawnBody, DrawnLength};
 
-/// Colours that remain apart for the colour-blind (Okabe and Ito, 2008), and their meaning; dark where the reader's
-/// system is.
+/// Colours that the colour-blind distinguish (Okabe and Ito, 2008), and their meaning; dark if the reader's system is.
 const STYLE: &str = "
 svg { background: #fff; font-family: sans-serif; fill: #222; }
 .body { fill-opacity: 0.25; stroke-width: 2; stroke-linejoin: round; stroke-linecap: round; }
@@ -57,7 +56,7 @@ const MARGIN: f64 = 70.0;
 /// Writes the picture `mechanism.svg`, and returns its path.
 ///
 /// # Errors
-/// Where it cannot be written.
+/// If it cannot be written.
 pub fn write_drawing(dir: &Path, drawing: &Drawing) -> Result<PathBuf, ExportError> {
     let mut files = AtomicFiles::in_folder(dir)?;
     files.add(NAME, drawing_svg(drawing).as_bytes())?;
@@ -70,7 +69,7 @@ pub(super) fn drawing_svg(drawing: &Drawing) -> String {
     let (projections, largest, columns): (&[Projection], Px, usize) =
         if drawing.spatial { (&SPACE, Px::new(460.0, 400.0), 2) } else { (&PLANE, Px::new(900.0, 700.0), 1) };
     let places = places(drawing);
-    // All views have one scale, and are no higher than they have to be.
+    // All views have one scale, and are no higher than necessary.
     let scaled = projections.iter().map(|view| view.scale(&places, largest - Px::repeat(2.0 * MARGIN)));
     let scale = scaled.fold(f64::INFINITY, f64::min);
     let heights = projections.iter().map(|view| view.height(&places) * scale);
@@ -143,7 +142,7 @@ fn panel(drawing: &Drawing, view: &View, corner: Px, size: Px) -> Group {
     if view.title().is_empty() { group } else { group.add(text(corner + Px::new(20.0, 16.0), 12.0, view.title())) }
 }
 
-/// Names of bodies, and of points where there are few.
+/// Names of bodies, and of points if they are few.
 fn names(drawing: &Drawing, view: &View, mut group: Group, labels: &mut Labels) -> Group {
     let points: usize = drawing.bodies.iter().map(|body| body.points.len()).sum();
     if drawing.bodies.len() > TUNING.most_names {
@@ -185,7 +184,7 @@ fn measure(length: &DrawnLength, view: &View, labels: &mut Labels) -> Group {
     group.add_all(labels.beside(middle, offset.normalize(), &tolerance(length), 11.0, "point"))
 }
 
-/// `l1 = 0.15 m ± 0.0015 m`, or its interval where it is not symmetric.
+/// `l1 = 0.15 m ± 0.0015 m`, or the interval if it is not symmetric.
 fn tolerance(length: &DrawnLength) -> String {
     let DrawnLength { parameter, nominal, lower, upper, .. } = length;
     let (below, above) = (nominal - lower, upper - nominal);
@@ -219,7 +218,7 @@ fn scale_bar(view: &View, at: Px, wanted: f64) -> Group {
     Group::new().add(bar).add(text(end + Px::new(8.0, 4.0), 11.0, &label))
 }
 
-/// Gravity's direction; `None` where it points at the reader.
+/// Arrow in the direction of gravity; `None` if it points at the reader.
 fn gravity_arrow(gravity: [f64; 3], view: &View, at: Px) -> Option<Group> {
     let along = view.direction(gravity)?;
     let size = gravity.iter().map(|component| component * component).sum::<f64>().sqrt();
@@ -231,9 +230,9 @@ fn text(at: Px, size: f64, text: &str) -> Text {
     Text::new(text).set("x", px(at.x)).set("y", px(at.y)).set("font-size", size).set("stroke", "none")
 }
 
-/// What [`Group`] lacks.
+/// Extension of [`Group`].
 trait AddAll: Sized {
-    /// Adds what there is.
+    /// Adds all nodes.
     fn add_all<N: Into<Box<dyn svg::Node>>>(self, nodes: impl IntoIterator<Item = N>) -> Self;
 }
 

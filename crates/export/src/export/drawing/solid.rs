@@ -23,13 +23,13 @@ fn frame(solid: &DrawnSolid, drawing: &Drawing) -> SolidFrame {
     SolidFrame::in_ground(solid, &drawing.bodies[solid.body])
 }
 
-/// Positions that a solid is between, in the ground's frame.
+/// Positions that enclose a solid, in the ground's frame.
 pub(super) fn places(solid: &DrawnSolid, drawing: &Drawing) -> Vec<[f64; 3]> {
     let frame = frame(solid, drawing);
     reach(&solid.form).into_iter().map(|point| frame.place(point)).collect()
 }
 
-/// A solid; `None` where nothing of it is seen.
+/// A solid; `None` if no part of it is visible.
 pub(super) fn solid(solid: &DrawnSolid, drawing: &Drawing, view: &View) -> Option<Group> {
     let frame = frame(solid, drawing);
     let seen = |point: [f64; 3]| view.px(frame.place(point));
@@ -102,7 +102,7 @@ fn rounded(corners: &[Px], radius: f64) -> Path {
         let data = data.elliptical_arc_to(half(one + right)).elliptical_arc_to(half(one - right)).close();
         return Path::new().set("d", data);
     }
-    // Of the hull the inside is on the side of `across`.
+    // The inside of a hull is on the side of `across`.
     let outward = |index: usize| -radius * across((next(index) - corners[index]).normalize());
     let mut data = Data::new();
     for (index, &corner) in corners.iter().enumerate() {
@@ -117,7 +117,7 @@ fn rounded(corners: &[Px], radius: f64) -> Path {
     Path::new().set("d", data.close())
 }
 
-/// The sides that are turned to the reader, and the edges between them that are sharp.
+/// The faces that are turned to the reader, and the sharp edges between them.
 fn polyhedron(faces: &[Face], frame: &SolidFrame, view: &View) -> Vec<Path> {
     let placed = |face: &Face| face.iter().map(|&corner| frame.place(corner)).collect::<Face>();
     let shown: Vec<(Face, Vector3<f64>)> =
@@ -150,12 +150,12 @@ fn polyhedron(faces: &[Face], frame: &SolidFrame, view: &View) -> Vec<Path> {
     vec![Path::new().set("d", fill).set("class", "fill"), Path::new().set("d", lines).set("class", "rim")]
 }
 
-/// A place in tenths of px, in which corners of neighbours meet.
+/// A point in tenths of px, in which corners of neighbours coincide.
 fn tenths(at: Px) -> [i64; 2] {
     [at.x, at.y].map(|side| (10.0 * side).round() as i64)
 }
 
-/// A part of a plane: a hatched line where it is seen from its side, and else a square.
+/// A part of a plane: a hatched line if it is seen from its side, otherwise a square.
 fn half_space(group: Group, at: [f64; 3], normal: [f64; 3], view: &View) -> Option<Group> {
     let middle = view.px(at);
     let unit = Vector3::from(normal).try_normalize(0.0)?;

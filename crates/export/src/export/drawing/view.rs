@@ -2,29 +2,29 @@
 
 use nalgebra::{Vector2, Vector3};
 
-/// A place on the paper, px; y points down.
+/// A point on the paper, px; y points down.
 pub(super) type Px = Vector2<f64>;
 
-/// A direction to look in.
+/// A direction of view.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Projection {
     /// For people: `from above (x, y)`.
     pub title: &'static str,
-    /// What points right on the paper.
+    /// Direction to the right on the paper.
     right: [f64; 3],
-    /// What points up on the paper.
+    /// Direction upwards on the paper.
     up: [f64; 3],
 }
 
-/// A mechanism of the plane in its true shape.
+/// View of a plane mechanism, in its true shape.
 pub(super) const PLANE: [Projection; 1] = [Projection { title: "", right: [1.0, 0.0, 0.0], up: [0.0, 1.0, 0.0] }];
 
-/// One of space: from three quarters (an isometric view), from the front, from the side, from above.
+/// Views of a spatial mechanism: from three quarters (an isometric view), from the front, from the side, from above.
 pub(super) const SPACE: [Projection; 4] = [
     Projection {
         title: "three-quarter view",
         right: [std::f64::consts::FRAC_1_SQRT_2, -std::f64::consts::FRAC_1_SQRT_2, 0.0],
-        // (1, 1, −2)/√6, away from whom it is seen by.
+        // (1, 1, 2)/√6, tilted away from the reader.
         up: [0.408_248_290_463_863, 0.408_248_290_463_863, 0.816_496_580_927_726],
     },
     Projection { title: "along y: x right, z up", right: [1.0, 0.0, 0.0], up: [0.0, 0.0, 1.0] },
@@ -53,7 +53,7 @@ impl Projection {
         filled.reduce(f64::min).unwrap_or_else(|| size.min())
     }
 
-    /// On the paper, in m, y up.
+    /// A position on the paper, m, y up.
     fn flat(&self, position: [f64; 3]) -> Vector2<f64> {
         let position = Vector3::from(position);
         Vector2::new(position.dot(&Vector3::from(self.right)), position.dot(&Vector3::from(self.up)))
@@ -68,23 +68,24 @@ pub(super) struct View {
     pub scale: f64,
     /// Position shown in the middle, m.
     middle: Vector2<f64>,
-    /// Where the middle is, px.
+    /// Its point on the paper, px.
     centre: Px,
 }
 
 impl View {
-    /// That shows the middle of some positions in the middle of a rectangle whose upper left corner is `corner`.
+    /// The view that shows the middle of some positions in the middle of a rectangle whose upper left corner is
+    /// `corner`.
     pub fn centred(projection: Projection, positions: &[[f64; 3]], scale: f64, corner: Px, size: Px) -> Self {
         let (middle, _) = projection.extent(positions);
         Self { projection, scale, middle, centre: corner + 0.5 * size }
     }
 
-    /// For people: which view it is.
+    /// Title of the view, for people.
     pub fn title(&self) -> &'static str {
         self.projection.title
     }
 
-    /// Where a position is on the paper.
+    /// Point on the paper of a position, px.
     pub fn px(&self, position: [f64; 3]) -> Px {
         let from_middle = self.scale * (self.projection.flat(position) - self.middle);
         self.centre + Px::new(from_middle.x, -from_middle.y)

@@ -8,21 +8,21 @@ use crate::grammar::display_unit::ShownUnit;
 /// A linear axis. Data in SI is divided by the unit's factor before it is drawn.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
-    /// What its numbers are in.
+    /// Unit of its numbers.
     pub unit: ScaleUnit,
     /// Lower end, in `unit`.
     pub min: f64,
     /// Upper end, in `unit`, above `min`.
     pub max: f64,
-    /// Between ticks.
+    /// Distance between ticks.
     step: f64,
-    /// Whether all that it shows is one value.
+    /// Whether all data are one value.
     pub is_constant: bool,
 }
 
 impl Axis {
     /// The axis for `values` in SI, shown in a unit, with about `ticks` ticks; `padding` is the part of the range that
-    /// stays free at each end. Whatever is not finite is passed over. What moves by less than `noise` is a constant.
+    /// stays free at each end. Values that are not finite are ignored. A range below `noise` is a constant.
     pub fn fit<'a>(
         values: impl Iterator<Item = f64>,
         unit: impl Into<ShownUnit<'a>>,
@@ -57,12 +57,12 @@ impl Axis {
         Self { unit, min, max, step: round_step((max - min) / ticks.max(1) as f64), is_constant }
     }
 
-    /// Where `x` lies: 0 at the lower end, 1 at the upper end.
+    /// Position of `x`: 0 at the lower end, 1 at the upper end.
     pub fn place(&self, x: f64) -> f64 {
         (x / self.unit.factor - self.min) / (self.max - self.min)
     }
 
-    /// The ticks: their places, and their labels.
+    /// The ticks: their positions, and their labels.
     pub fn ticks(&self) -> Vec<(f64, String)> {
         let decimals = (-symdiff::math::log10(self.step).floor()).clamp(0.0, 17.0) as usize;
         // Multiples of the step, counted in whole numbers so that no rounding adds up.

@@ -1,20 +1,20 @@
-//! The data of a figure of courses over time, for what shows it: scales, and series as thin as the page.
+//! The data of a figure of courses over time, for the scripts that show it: scales, and series as thin as the page.
 
 use serde::Serialize;
 
 use super::axis::Axis;
 use crate::export::tuning::TUNING;
 
-/// All that a figure of courses says of itself.
+/// All data of a figure of courses.
 #[derive(Clone, Debug, Serialize)]
 pub struct FigureData {
     /// The model's name.
     pub model: String,
     /// The output's name.
     pub output: String,
-    /// Of the upper panel.
+    /// Unit of the upper panel.
     pub unit: String,
-    /// What the rows are over, where that is not the time.
+    /// Quantity of the horizontal axis, if that is not the time.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub across: Option<AcrossData>,
     /// Times of the rows, s, or values of the quantity on the axis.
@@ -25,23 +25,23 @@ pub struct FigureData {
     pub series: Vec<SeriesData>,
 }
 
-/// What a figure's rows are over.
+/// Quantity of the horizontal axis of a figure.
 #[derive(Clone, Debug, Serialize)]
 pub struct AcrossData {
     /// Its name.
     pub name: String,
-    /// In which its values are.
+    /// Unit of its values.
     pub unit: String,
 }
 
 /// A panel's scales.
 #[derive(Clone, Debug, Serialize)]
 pub struct PanelData {
-    /// As its group has it.
+    /// Identifier, as in its group.
     pub id: String,
-    /// Of the panel's numbers.
+    /// Unit of the panel's numbers.
     pub unit: String,
-    /// What one of the panel's numbers is in SI.
+    /// Value of the panel's unit in SI.
     pub si: f64,
     /// The time, s.
     pub x: ScaleData,
@@ -56,16 +56,16 @@ pub struct ScaleData {
     pub min: f64,
     /// Upper end.
     pub max: f64,
-    /// Where the lower end is.
+    /// Position of the lower end, px.
     pub from_px: f64,
-    /// Where the upper end is.
+    /// Position of the upper end, px.
     pub to_px: f64,
 }
 
-/// One of the series of a panel; numbers in the panel's unit, `null` where there is none.
+/// One of the series of a panel; numbers in the panel's unit, `null` if unknown.
 #[derive(Clone, Debug, Serialize)]
 pub struct SeriesData {
-    /// As its group has it.
+    /// Identifier, as in its group.
     pub id: String,
     /// Key of its group in all panels: groups and entries of the legend have it too.
     pub group: String,
@@ -75,7 +75,7 @@ pub struct SeriesData {
     pub kind: &'static str,
     /// The panel's `id`.
     pub panel: String,
-    /// Times of the rows, s, where they are not those of the figure.
+    /// Times of the rows, s, if they are not those of the figure.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub time: Option<Vec<f64>>,
     /// Lowest in each row.
@@ -84,7 +84,7 @@ pub struct SeriesData {
     pub upper: Vec<Option<f64>>,
 }
 
-/// How many rows become one.
+/// Number of rows that are merged into one.
 fn bucket(rows: usize) -> usize {
     rows.div_ceil(TUNING.rows_of_series).max(1)
 }
@@ -105,7 +105,7 @@ pub fn extremes(lower: &[f64], upper: &[f64], axis: &Axis) -> [Vec<Option<f64>>;
     [of(lower, f64::min), of(upper, f64::max)]
 }
 
-/// A number with the digits that a step leaves.
+/// A number rounded to the decimals of a step.
 pub fn rounded(x: f64, step: f64) -> f64 {
     let decimals = (-symdiff::math::log10(step.max(f64::MIN_POSITIVE)).floor()).clamp(0.0, 300.0) as usize;
     if x.abs() >= 1e15 {

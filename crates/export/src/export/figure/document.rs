@@ -1,4 +1,4 @@
-//! What all figures have: a document with a title, a style for light and dark readers, text, and the data beside it as
+//! Common parts of all figures: a document with a title, a style for light and dark readers, text, and the data as
 //! JSON.
 
 use serde::Serialize;
@@ -12,14 +12,14 @@ use super::style::STYLE;
 /// Size of text, px.
 pub const TEXT: f64 = 13.0;
 
-/// Where a text stands beside its point.
+/// Position of a text relative to its point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Anchor {
-    /// It begins there.
+    /// The text begins there.
     Start,
-    /// Its middle is there.
+    /// The middle of the text is there.
     Middle,
-    /// It ends there.
+    /// The text ends there.
     End,
 }
 
@@ -36,14 +36,14 @@ pub fn document(size: (f64, f64), title: &str) -> Document {
         .add(Rectangle::new().set("class", "paper").set("width", px(size.0)).set("height", px(size.1)))
 }
 
-/// The data of a figure, for what shows it.
+/// The data of a figure, for the scripts that show it.
 pub fn metadata(data: &impl Serialize) -> Result<Element, serde_json::Error> {
     let mut element = Element::new("metadata");
     svg::Node::append(&mut element, Characters::new(serde_json::to_string(data)?));
     Ok(element)
 }
 
-/// The figure's document, as a file has it.
+/// The text of the figure's file.
 pub fn finished(document: &Document) -> String {
     document.to_string() + "\n"
 }
@@ -64,7 +64,7 @@ pub fn upright(content: &str, (x, y): Point) -> Text {
     text(content, (x, y), Anchor::Middle).set("transform", turn)
 }
 
-/// What the figure is of, above all else.
+/// Heading of a figure.
 pub fn heading(content: &str, at: Point) -> Text {
     text(content, at, Anchor::Start).set("class", "heading")
 }
@@ -84,7 +84,7 @@ pub fn text_width(text: &str) -> f64 {
     0.58 * TEXT * text.chars().count() as f64
 }
 
-/// A text that is no longer than `most` characters.
+/// A text cut to at most `most` characters.
 pub fn shortened(text: &str, most: usize) -> String {
     if text.chars().count() <= most {
         text.to_owned()

@@ -7,7 +7,7 @@ use super::panel::Style;
 use super::path::{Point, line_data};
 use super::style::Hue;
 
-/// From one row to the next, px.
+/// Distance from one row to the next, px.
 pub const ROW: f64 = 20.0;
 
 /// Width of an entry's sign, px.
@@ -15,15 +15,15 @@ const SIGN: f64 = 26.0;
 
 /// An entry.
 pub struct Entry {
-    /// Key of its group, as the series have it.
+    /// Key of its group, as in the series.
     pub group: String,
     /// For people.
     pub label: String,
-    /// How it is drawn.
+    /// Its sign.
     pub sign: Sign,
 }
 
-/// How an entry is drawn.
+/// Sign of an entry.
 pub enum Sign {
     /// A line.
     Line(Hue),
@@ -39,7 +39,7 @@ pub enum Sign {
 pub struct Legend(Vec<Vec<Entry>>);
 
 impl Legend {
-    /// As many entries in a row as fit into a width, px.
+    /// Arranges entries in rows, each with as many as fit into a width, px.
     pub fn new(entries: Vec<Entry>, width: f64) -> Self {
         let mut rows: Vec<Vec<Entry>> = vec![Vec::new()];
         let mut x = 0.0;
@@ -62,7 +62,7 @@ impl Legend {
         ROW * self.0.len().saturating_sub(1) as f64
     }
 
-    /// The entries, the first at a point.
+    /// The entries, beginning at a point.
     pub fn drawn(&self, (left, top): Point) -> Group {
         let mut legend = group("legend");
         for (row, entries) in self.0.iter().enumerate() {
@@ -77,7 +77,7 @@ impl Legend {
 }
 
 impl Entry {
-    /// From its left end to the next entry's, px.
+    /// Distance from its left end to the next entry's, px.
     fn step(&self) -> f64 {
         SIGN + 7.0 + text_width(&self.label) + 22.0
     }

@@ -3,10 +3,10 @@
 use super::prefix::superscript;
 use crate::export::tuning::TUNING;
 
-/// A tick: its place, and its label where it has one.
+/// A tick: its position, and its label if it has one.
 pub type Tick = (f64, Option<String>);
 
-/// From `10^first` to `10^last`.
+/// Axis from `10^first` to `10^last`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LogAxis {
     first: i32,
@@ -14,7 +14,7 @@ pub struct LogAxis {
 }
 
 impl LogAxis {
-    /// The axis for `values`; whatever is not positive and finite is passed over.
+    /// The axis for `values`; values that are not positive and finite are ignored.
     pub fn fit(values: impl Iterator<Item = f64>) -> Self {
         let exponents = values.filter(|x| x.is_normal() && *x > 0.0).map(symdiff::math::log10);
         let (low, high) =
@@ -26,13 +26,15 @@ impl LogAxis {
         Self { first, last: (high.ceil() as i32).max(first + 1) }
     }
 
-    /// Where `x` lies: 0 at the lower end, 1 at the upper end; values below the axis or not positive, at its lower end.
+    /// Position of `x`: 0 at the lower end, 1 at the upper end; the lower end for values below the axis or not
+    /// positive.
     pub fn place(&self, x: f64) -> f64 {
         let exponent = if x > 0.0 { symdiff::math::log10(x) } else { f64::NEG_INFINITY };
         ((exponent - f64::from(self.first)) / f64::from(self.last - self.first)).clamp(0.0, 1.0)
     }
 
-    /// One at each decade with a label (every second, third, … of many), and one at 2, 3, … 9 times it without.
+    /// Ticks at each decade, labelled (every second, third, … if there are many), and at 2, 3, … 9 times it,
+    /// unlabelled.
     pub fn ticks(&self) -> Vec<Tick> {
         let decades = self.last - self.first;
         let every = 1 + (decades - 1) / TUNING.many_decades;

@@ -1,5 +1,4 @@
-//! What figures are made of: scales, paths, legends, colours, and the document with its data. All of it is
-//! deterministic.
+//! Parts of figures: scales, paths, legends, colours, and the document with its data. All are deterministic.
 
 pub mod axis;
 pub mod data;
@@ -17,6 +16,6 @@ pub mod view;
 pub struct Caption<'a> {
     /// The model's name.
     pub model: &'a str,
-    /// Begins all ids of the figure: letters, digits and `-`, a letter first; unique in the page.
+    /// Prefix of all ids of the figure: letters, digits and `-`, a letter first; unique in the page.
     pub prefix: &'a str,
 }

@@ -1,6 +1,6 @@
 //! A panel of a figure: axes, curves, and bands with their errors.
 //!
-//! A lighter band around each band shows its error; where it is unreliable, a band is hatched.
+//! A lighter band around each band shows its error; unreliable parts of a band are hatched.
 
 use svg::node::element::{Circle, ClipPath, Group, Path, Pattern, Rectangle, Title};
 
@@ -20,13 +20,13 @@ const HATCH: f64 = 6.0;
 /// How a band is drawn.
 #[derive(Clone, Debug)]
 pub struct Style {
-    /// In the legend.
+    /// Label in the legend.
     pub label: String,
-    /// Of edges and areas.
+    /// Colour of edges and areas.
     pub color: Color,
     /// Width of the edges, px.
     pub edge: f64,
-    /// Opacity of the band; 0 where only its edges are drawn, and no error.
+    /// Opacity of the band; 0 if only its edges are drawn, without error.
     pub fill: f64,
     /// Lengths of dash and gap, px.
     pub dashes: Option<Vec<f64>>,
@@ -35,7 +35,7 @@ pub struct Style {
 }
 
 impl Style {
-    /// The dashes as SVG has them.
+    /// The dashes in the notation of SVG.
     pub fn dasharray(&self) -> Option<String> {
         let dashes = self.dashes.as_ref()?;
         Some(dashes.iter().map(f64::to_string).collect::<Vec<_>>().join(" "))
@@ -45,7 +45,7 @@ impl Style {
 /// A rectangle of the figure with its axes; lengths in px.
 #[derive(Clone)]
 pub struct Panel<'a> {
-    /// Unique in the page.
+    /// Identifier, unique in the page.
     pub id: String,
     /// Left edge.
     pub left: f64,
@@ -55,16 +55,16 @@ pub struct Panel<'a> {
     pub top: f64,
     /// Lower edge.
     pub bottom: f64,
-    /// Time.
+    /// Axis of the time.
     pub x: &'a Axis,
-    /// Values.
+    /// Axis of the values.
     pub y: &'a Axis,
 }
 
 /// A drawing in a panel: its name in the figure's data, and the key of its group.
 #[derive(Clone, Copy, Debug)]
 pub struct Named<'a> {
-    /// The series.
+    /// Identifier of the series.
     pub id: &'a str,
     /// Key of its group in all panels.
     pub group: &'a str,
@@ -148,7 +148,7 @@ impl Panel<'_> {
         })
     }
 
-    /// A band's error: what lies between its sides moved apart.
+    /// A band's error: the area between its sides moved outwards.
     pub fn error(&self, named: Named, times: &[f64], band: &Band, style: &Style) -> Group {
         let apart = |side: &[f64], sign: f64| -> Vec<f64> {
             side.iter().zip(&band.error.total).map(|(bound, error)| bound + sign * error).collect()
@@ -157,7 +157,7 @@ impl Panel<'_> {
         self.areas(named, times, [&lower, &upper], style.color, "area", rounded(LIGHTER * style.fill))
     }
 
-    /// A layer of a stack: what lies between two curves.
+    /// A layer of a stack: the area between two curves.
     pub fn layer(&self, named: Named, times: &[f64], sides: [&[f64]; 2], color: Color) -> Group {
         self.areas(named, times, sides, color, "layer", 1.0)
     }
@@ -229,7 +229,7 @@ impl Panel<'_> {
         let across = |row: usize| self.place(times[row], 0.0).0;
         let mut parts: Vec<std::ops::Range<usize>> = Vec::new();
         for row in rows.clone().filter(|&row| unresolved[row]) {
-            // Until the next row is reached, and some way if that is near.
+            // To the next row, and farther if that is near.
             let mut end = row + 1;
             while end + 1 < rows.end && across(end) - across(row) < TUNING.narrowest_hatched {
                 end += 1;
@@ -243,7 +243,7 @@ impl Panel<'_> {
         parts
     }
 
-    /// The outline of what lies between two curves.
+    /// The outline of the area between two curves.
     fn outline(&self, times: &[f64], [lower, upper]: [&[f64]; 2], rows: std::ops::Range<usize>) -> String {
         let side = |side: &[f64]| thinned(rows.clone().map(|row| self.place(times[row], side[row])));
         let mut outline = side(upper);
@@ -251,14 +251,14 @@ impl Panel<'_> {
         line_data(&outline)
     }
 
-    /// Where a point of the data lies on the page; points far beyond the panel are moved nearer.
+    /// Position on the page of a point of the data; points far beyond the panel are moved nearer.
     pub fn place(&self, t: f64, y: f64) -> Point {
         let across = self.left + self.x.place(t) * (self.right - self.left);
         let up = self.y.place(y).clamp(-TUNING.beyond_panel, 1.0 + TUNING.beyond_panel);
         (across, self.bottom - up * (self.bottom - self.top))
     }
 
-    /// The scales, for what shows the figure.
+    /// The scales, for the scripts that show the figure.
     pub fn data(&self) -> PanelData {
         let seconds = self.x.unit.factor;
         PanelData {

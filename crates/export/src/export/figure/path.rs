@@ -1,8 +1,8 @@
-//! Curves made ready for drawing: broken at gaps, and without points that nobody could see.
+//! Curves prepared for drawing: broken at gaps, and without points that are invisible.
 //!
 //! Within a column of pixels the first, the last, the lowest and the highest point stay, which is all that a screen
 //! shows of a curve (Jugel et al., Proc. VLDB Endow. 7 (2014) 797). Of the rest, points on a straight line between
-//! others go (Douglas and Peucker, Cartographica 10 (1973) 112).
+//! others are removed (Douglas and Peucker, Cartographica 10 (1973) 112).
 
 use crate::export::tuning::TUNING;
 
@@ -28,7 +28,7 @@ pub fn runs<const N: usize>(values: [&[f64]; N]) -> Vec<std::ops::Range<usize>> 
     runs
 }
 
-/// The points of a curve that are seen. Their x ascends.
+/// The visible points of a curve whose x ascends.
 pub fn thinned(points: impl Iterator<Item = Point>) -> Vec<Point> {
     let mut kept: Vec<Point> = Vec::new();
     let mut column: Vec<Point> = Vec::new();
@@ -59,7 +59,7 @@ fn flush(column: &mut Vec<Point>, kept: &mut Vec<Point>) {
     column.clear();
 }
 
-/// Without points that are on the line between those that stay.
+/// The points without those on the line between the remaining ones.
 fn simplified(points: &[Point]) -> Vec<Point> {
     if points.len() < 3 {
         return points.to_vec();
@@ -96,7 +96,7 @@ pub fn line_data(points: &[Point]) -> String {
             continue;
         }
         let step = pair(step);
-        // The command stands once, and a minus separates as well as a space.
+        // The command is written once, and a minus separates as well as a space.
         data.push_str(match (is_line, step.starts_with('-')) {
             (false, _) => "l",
             (true, true) => "",
@@ -125,7 +125,7 @@ fn tenths(value: i64) -> String {
     }
 }
 
-/// A length as an attribute has it.
+/// A length in the form of an attribute.
 pub fn px(value: f64) -> f64 {
     // No −0.
     (10.0 * value).round() / 10.0 + 0.0

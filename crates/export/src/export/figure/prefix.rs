@@ -1,5 +1,5 @@
-//! Units as a scale shows them: with the prefix that makes its numbers short (kN, µm), or a power of ten where there is
-//! no such prefix.
+//! Units on a scale: with the prefix that makes its numbers short (kN, µm), or a power of ten if there is no such
+//! prefix.
 
 use crate::export::tuning::TUNING;
 use crate::grammar::display_unit::ShownUnit;
@@ -7,7 +7,7 @@ use crate::grammar::display_unit::ShownUnit;
 /// Sizes that read well without a prefix.
 const PLAIN: std::ops::Range<f64> = 0.1..1e4;
 
-/// Powers of a thousand that a scale may take out; beyond them the power itself would under- or overflow.
+/// Powers of ten that a scale may take out; beyond them the power itself would under- or overflow.
 const EXPONENTS: std::ops::RangeInclusive<i32> = -306..=306;
 
 /// Prefixes and their powers of ten.
@@ -29,24 +29,24 @@ const PREFIXED: [(&str, i32); 10] = [
     ("rad", 0),
 ];
 
-/// A unit as a scale shows it.
+/// A unit on a scale.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScaleUnit {
-    /// As in print: `kN·m`, `10³ rad/s`; empty for a number.
+    /// Text as in print: `kN·m`, `10³ rad/s`; empty for a number.
     pub text: String,
-    /// What one of it is in SI.
+    /// Its value in SI.
     pub factor: f64,
 }
 
 impl ScaleUnit {
-    /// For values up to `size` in SI.
+    /// The unit for values up to `size` in SI.
     pub fn of<'a>(unit: impl Into<ShownUnit<'a>>, size: f64) -> Self {
         let ShownUnit { text, si } = unit.into();
         let scaled = Self::prefixed(text, size / si);
         Self { factor: scaled.factor * si, ..scaled }
     }
 
-    /// For values up to `size` in `unit`; the factor is of this unit.
+    /// The unit for values up to `size` in `unit`; the factor is relative to `unit`.
     fn prefixed(unit: &str, size: f64) -> Self {
         if size == 0.0 || !size.is_finite() || PLAIN.contains(&size) {
             return Self { text: pretty_unit(unit), factor: 1.0 };
@@ -66,7 +66,7 @@ impl ScaleUnit {
     }
 }
 
-/// The first factor of a unit without its power, its power where that is 1, 2 or 3, and the text behind the symbol.
+/// The first factor of a unit without its power, its power if that is 1, 2 or 3, and the text behind the symbol.
 fn first_factor(unit: &str) -> (&str, i32, &str) {
     let end = unit.find(|c: char| !c.is_alphabetic() && c != 'µ').unwrap_or(unit.len());
     let (first, rest) = unit.split_at(end);
@@ -90,14 +90,14 @@ fn prefixed(symbol: &str, exponent: i32) -> Option<String> {
     Some(format!("{prefix}{base}"))
 }
 
-/// An integer above the line.
+/// An integer as a superscript.
 pub fn superscript(n: i32) -> String {
     const DIGITS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
     let digits = n.unsigned_abs().to_string().bytes().map(|b| DIGITS[usize::from(b - b'0')]).collect::<String>();
     if n < 0 { format!("⁻{digits}") } else { digits }
 }
 
-/// `N*s/m^2` as print has it: `N·s/m²`.
+/// `N*s/m^2` as in print: `N·s/m²`.
 pub fn pretty_unit(unit: &str) -> String {
     let mut text = String::new();
     let mut rest = unit;

@@ -1,9 +1,9 @@
-//! Colours of figures: for light and dark readers, and apart for every colour vision.
+//! Colours of figures: for light and dark readers, and distinct for every colour vision.
 //!
-//! Programs that know no custom properties (editors, converters) pass over a declaration with `var()`, and take the one
-//! before it.
+//! Programs without custom properties (editors, converters) ignore a declaration with `var()`, and take the one before
+//! it.
 
-/// What all figures share. A figure may stand in a page with others: every rule is of figures alone.
+/// Style of all figures. A figure may be in a page with others: every rule applies to figures only.
 pub const STYLE: &str = "
 .mbint-figure { --mb-paper: #fff; --mb-ink: #222; --mb-frame: #666; --mb-grid: #e4e4e4; font-family: Helvetica, Arial, sans-serif; font-size: 13px; }
 .mbint-figure text { fill: #222; fill: var(--mb-ink); }
@@ -41,20 +41,20 @@ pub const PALETTE: [Color; 7] = [
     Color([110, 110, 110]),
 ];
 
-/// What repeats the palette is so much darker.
+/// Factor by which each repetition of the palette is darker.
 const DARKER: f64 = 0.6;
 
 /// Luminance that a colour needs on dark paper.
 const BRIGHT: f64 = 0.3;
 
 impl Color {
-    /// The colour of the `index`-th of many.
+    /// The colour with index `index`.
     pub fn of(index: usize) -> Self {
         let scale = DARKER.powi((index / PALETTE.len()) as i32);
         Self(PALETTE[index % PALETTE.len()].0.map(|part| (f64::from(part) * scale) as u8))
     }
 
-    /// As SVG has it: `#0072b2`.
+    /// The notation of SVG: `#0072b2`.
     pub fn hex(self) -> String {
         let [red, green, blue] = self.0;
         format!("#{red:02x}{green:02x}{blue:02x}")
@@ -67,7 +67,7 @@ impl Color {
         bright.unwrap_or(Self([255; 3]))
     }
 
-    /// About the part of white's light, 0 to 1; with a gamma of 2 instead of the standard's 2.2.
+    /// Approximate share of white's light, 0 to 1; with a gamma of 2 instead of the standard's 2.2.
     fn luminance(self) -> f64 {
         let [red, green, blue] = self.0.map(|part| (f64::from(part) / 255.0).powi(2));
         0.2126 * red + 0.7152 * green + 0.0722 * blue
@@ -79,7 +79,7 @@ impl Color {
     }
 }
 
-/// A colour, or the ink's.
+/// A colour, or that of the ink.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Hue {
     /// Black on light paper, white on dark paper.
@@ -89,7 +89,8 @@ pub enum Hue {
 }
 
 impl Hue {
-    /// An element in this colour: shapes of the classes `line`, `band`, `area` and `hollow` inside it have it.
+    /// Paints an element in this colour: shapes of the classes `line`, `band`, `area` and `hollow` inside it inherit
+    /// it.
     pub fn paint(self, element: svg::node::element::Group, class: &str) -> svg::node::element::Group {
         match self {
             Self::Ink => element.set("class", format!("{class} ink")),

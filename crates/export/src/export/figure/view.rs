@@ -2,7 +2,7 @@
 
 use crate::results::Band;
 
-/// The values that an axis has to show, and which bands exceed it.
+/// The values that an axis has to show, and for each band whether it exceeds them.
 ///
 /// The narrowest band and the nominal course are always in view, and so is everything up to `widest` times as wide. A
 /// diverged bound, such as Taylor's over long times, would reduce the others to lines: it leaves the plot instead.
@@ -10,7 +10,7 @@ pub fn in_view(nominal: &[f64], bands: &[Band], widest: f64) -> (Vec<f64>, Vec<b
     let nominal = extent(nominal.iter());
     let extents: Vec<_> = bands.iter().map(|band| extent(band.lower.iter().chain(&band.upper))).collect();
     let union = |a: (f64, f64), b: (f64, f64)| (a.0.min(b.0), a.1.max(b.1));
-    // Halved, for the difference of the largest numbers not to overflow. Where there is nothing, half is -∞.
+    // Halved, so that the difference of the largest numbers does not overflow. Without values, half is -∞.
     let half = |(low, high): (f64, f64)| 0.5 * high - 0.5 * low;
     let whole = extents.iter().map(|&extent| union(extent, nominal)).filter(|&extent| half(extent).is_finite());
     let narrowest = whole.min_by(|&a, &b| half(a).total_cmp(&half(b))).unwrap_or(nominal);
@@ -27,13 +27,13 @@ pub fn in_view(nominal: &[f64], bands: &[Band], widest: f64) -> (Vec<f64>, Vec<b
     (values, beyond)
 }
 
-/// The lowest and the highest finite value; (∞, −∞) of nothing.
+/// The lowest and the highest finite value; (∞, −∞) without values.
 fn extent<'a>(values: impl Iterator<Item = &'a f64>) -> (f64, f64) {
     let finite = values.filter(|x| x.is_finite());
     finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &x| (low.min(x), high.max(x)))
 }
 
-/// A band less the nominal course.
+/// A band minus the nominal course.
 pub fn deviation(band: &Band, nominal: &[f64]) -> Band {
     let less = |side: &[f64]| side.iter().zip(nominal).map(|(x, nominal)| x - nominal).collect();
     Band { lower: less(&band.lower), upper: less(&band.upper), ..band.clone() }

@@ -10,7 +10,7 @@ use crate::export::figure::style::{Color, Hue};
 use crate::grammar::display_unit::ShownUnit;
 use crate::results::{Fit, FitParameter, FitProjection, FitRow};
 
-/// Sizes on the page, px, and what stays free on each side.
+/// Sizes on the page, px, and free space on each side.
 const WIDE: (f64, f64) = (760.0, 340.0);
 const SQUARE: (f64, f64) = (520.0, 480.0);
 const RIGHT: f64 = 20.0;

@@ -17,7 +17,7 @@ use crate::results::{Fit, FitParameter};
 /// The overlay's file.
 pub const FIT_OVERLAY: &str = "fit.yaml";
 
-/// Writes all files; the overlay where a parameter is consistent.
+/// Writes all files; the overlay only if a parameter is consistent.
 ///
 /// # Errors
 /// At the first file that cannot be written.
@@ -79,7 +79,7 @@ fn overlay(fit: &Fit) -> String {
     text
 }
 
-/// A value with deviations, in one piece, that are not smaller than those of the hull.
+/// A value with deviations, in one piece, at least as large as those of the hull.
 fn piece(own: &FitParameter, hull: [f64; 2], middle: f64) -> String {
     let unit = ShownUnit::of(&own.display, &own.unit);
     let [lower, upper] = hull.map(|end| unit.of_si(end));
@@ -111,7 +111,7 @@ mod tests {
             inner: None,
             middle: None,
         };
-        // Digits are those of the width: 0.0765.
+        // The digits follow the width: 0.0765.
         assert_eq!(piece(&own, [0.123_456_78, 0.2], 0.15), "0.15 m +0.05001 -0.02655");
     }
 }
