@@ -4,7 +4,7 @@
 #![forbid(unsafe_code)]
 #![cfg_attr(test, allow(clippy::disallowed_methods, reason = "tests compare with the standard library's functions"))]
 
-// Rooms of the crates below keep their names here.
+// Rooms of the crates below are reachable under their names here.
 use mbint_certificate::certificate;
 use mbint_engine::{compile, simulate};
 use mbint_language::{grammar, syntax};

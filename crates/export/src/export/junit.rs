@@ -20,31 +20,31 @@ pub struct Suite {
 /// A test.
 struct Case {
     name: String,
-    /// `None` where it passed.
+    /// `None` if it passed.
     fault: Option<Fault>,
 }
 
-/// How a test did not pass.
+/// Reason why a test did not pass.
 struct Fault {
-    /// `failure`, or `error` where nothing is decided.
+    /// `failure`, or `error` if undecided.
     element: &'static str,
     message: String,
     text: String,
 }
 
 impl Suite {
-    /// Of a model's requirements: a violated one is a failure, an undecided one an error.
+    /// Tests of a model's requirements: a violated one is a failure, an undecided one an error.
     pub fn of_requirements(model: &str, requirements: &[RequirementSummary]) -> Self {
         Self { model: model.to_owned(), cases: requirements.iter().map(of_requirement).collect() }
     }
 
-    /// Of a run that failed.
+    /// Test of a run that failed.
     pub fn failed(model: &str, why: &str) -> Self {
         let fault = Fault { element: "error", message: "the run failed".to_owned(), text: why.to_owned() };
         Self { model: model.to_owned(), cases: vec![Case { name: "run".to_owned(), fault: Some(fault) }] }
     }
 
-    /// Of a verification: a test for each quantity, scheme and formulation, and one for each balance of power.
+    /// Tests of a verification: one for each quantity, scheme and formulation, and one for each balance of power.
     pub fn of_verification(found: &Verification) -> Self {
         Self { model: found.model.clone(), cases: found.formulations.iter().flat_map(of_formulation).collect() }
     }
@@ -122,10 +122,10 @@ fn of_formulation(own: &FormulationVerification) -> Vec<Case> {
     cases
 }
 
-/// Writes all of them.
+/// Writes all suites.
 ///
 /// # Errors
-/// Where the file cannot be written.
+/// If the file cannot be written.
 pub fn write_junit(path: &Path, suites: &[Suite]) -> Result<(), ExportError> {
     let written = junit(suites).and_then(|text| std::fs::write(path, text));
     written.map_err(|source| ExportError::Write { path: path.to_owned(), source })
@@ -159,7 +159,7 @@ fn write_suite(writer: &mut Writer<Vec<u8>>, suite: &Suite) -> std::io::Result<(
     Ok(())
 }
 
-/// A test, with what went wrong.
+/// Writes a test, with its fault.
 fn write_case(writer: &mut Writer<Vec<u8>>, class: &str, own: &Case) -> std::io::Result<()> {
     let element =
         writer.create_element("testcase").with_attributes([("classname", class), ("name", own.name.as_str())]);

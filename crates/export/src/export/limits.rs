@@ -11,15 +11,15 @@ use crate::results::{LimitLine, RequirementSummary};
 /// A constant limit of an output over some time.
 #[derive(Clone, Debug)]
 pub(super) struct Limit {
-    /// As the figure's groups and legend have it.
+    /// Key of its group, as in the figure's groups and legend.
     group: String,
     /// The requirement: its name and its text.
     label: String,
     /// In SI.
     pub value: f64,
-    /// Whether values above it fail; else those below it do.
+    /// Whether values above it fail; otherwise those below it do.
     is_upper: bool,
-    /// From when until when, s.
+    /// Start and end of its time, s.
     times: (f64, f64),
 }
 
@@ -38,18 +38,18 @@ pub(super) fn limits(requirements: &[RequirementSummary], output: &str) -> Vec<L
 }
 
 impl Limit {
-    /// The limit less a course at each of its times; NaN at other times.
+    /// The limit minus a course at each of its times; NaN at other times.
     pub fn less(&self, times: &[f64], course: &[f64]) -> Vec<f64> {
         let holds = |time: f64| time >= self.times.0 && time <= self.times.1;
         times.iter().zip(course).map(|(&time, x)| if holds(time) { self.value - x } else { f64::NAN }).collect()
     }
 
-    /// The same over all that a figure shows, such as a parameter's values instead of times.
+    /// The same limit over the whole axis of a figure, such as a parameter's values instead of times.
     pub fn everywhere(&self) -> Self {
         Self { times: (f64::NEG_INFINITY, f64::INFINITY), ..self.clone() }
     }
 
-    /// In the legend; a limit may be too far away to be seen.
+    /// Its entry in the legend; a limit may be too far away to be seen.
     pub fn entry(&self, is_seen: bool) -> Entry {
         let label = if is_seen { self.label.clone() } else { format!("{} (beyond the plot)", self.label) };
         Entry { group: self.group.clone(), label, sign: Sign::Limit }
@@ -66,7 +66,7 @@ impl Limit {
             .add(Path::new().set("class", "limit").set("d", line_data(&[from, to])))
     }
 
-    /// The limit less the nominal course, in a panel of deviations.
+    /// The limit minus the nominal course, in a panel of deviations.
     pub fn drawn_below(&self, panel: &Panel, times: &[f64], course: &[f64]) -> Group {
         let less = self.less(times, course);
         runs([times, &less]).into_iter().fold(self.series(panel), |group, rows| {
@@ -76,7 +76,7 @@ impl Limit {
         })
     }
 
-    /// For what shows the figure; `course` is zero in a panel of values.
+    /// Its series, for the scripts that show the figure; `course` is zero in a panel of values.
     pub fn data(&self, panel: &Panel, times: &[f64], course: &[f64]) -> SeriesData {
         let less = self.less(times, course);
         let [lower, upper] = extremes(&less, &less, panel.y);
@@ -95,7 +95,7 @@ impl Limit {
     }
 }
 
-/// Which limits are near enough to `values` to be shown with them: no farther away than these reach.
+/// For each limit, whether it is near enough to `values` to be shown: at most as far away as these extend.
 pub(super) fn near<'l>(limits: &'l [Limit], values: &[f64]) -> impl Iterator<Item = bool> + use<'l> {
     let finite = values.iter().filter(|x| x.is_finite());
     let (low, high) = finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(*x), high.max(*x)));

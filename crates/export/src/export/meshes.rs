@@ -1,4 +1,4 @@
-//! Meshes of a drawing: those that a robot's file names are read here, others with the model.
+//! Meshes of a drawing: files named by robots are read here, others with the model.
 
 use std::path::Path;
 
@@ -10,11 +10,11 @@ use crate::syntax::mesh_file::{Triangle, triangles};
 use crate::syntax::regular;
 use crate::syntax::tuning::TUNING as SYNTAX;
 
-/// Triangles of all meshes of a drawing; those beyond are left out.
+/// Most triangles of all meshes of a drawing; the rest is omitted.
 pub const MOST_TRIANGLES: usize = TUNING.most_triangles;
 
-/// Reads meshes that have not been read, from files beside the model or in a folder there, and leaves out those that
-/// cannot be, and those that are too many.
+/// Reads meshes that have not been read, from files in the model's folder `beside` or below it, and omits those that
+/// cannot be read, and those that are too many.
 pub fn read_meshes(drawing: &mut Drawing, beside: &Path, most: usize) {
     let mut left = most;
     drawing.solids.retain_mut(|solid| {
@@ -33,7 +33,7 @@ pub fn read_meshes(drawing: &mut Drawing, beside: &Path, most: usize) {
 
 fn read(file: &str, beside: &Path) -> Option<Vec<Triangle>> {
     let plain = file.strip_prefix("file://").unwrap_or(file);
-    // Of `package://NAME/…` the package may be the model's folder.
+    // The package of `package://NAME/…` may be the model's folder.
     let within = plain.strip_prefix("package://").map(|path| path.split_once('/').map_or(path, |(_, rest)| rest));
     let name = Path::new(plain).file_name()?;
     let candidates = [Path::new(within.unwrap_or(plain)), Path::new(name)];

@@ -1,4 +1,4 @@
-//! `x3.svg` beside the scenes' folders: an output's bounds in every scene that has it.
+//! `x3.svg` next to the scenes' folders: an output's bounds in every scene that has it.
 
 use super::courses::{Across, BandedCourse, CourseBand, Shown, TIME, courses_svg};
 use super::figure::Caption;
@@ -17,7 +17,7 @@ pub struct SceneBounds<'a> {
     pub bounds: &'a Bounds,
 }
 
-/// Lengths of dashes and gaps, px: scenes differ in them beside their colours.
+/// Lengths of dashes and gaps, px: they distinguish scenes in addition to their colours.
 const DASHES: [&[f64]; 5] = [&[], &[9.0, 3.0], &[3.0, 2.0], &[9.0, 3.0, 2.0, 3.0], &[16.0, 4.0]];
 
 /// The bands of one output in several scenes as an SVG document: for each scene the edges of the first method that is
@@ -45,7 +45,7 @@ pub fn overlay_svg(caption: Caption, name: &str, scenes: &[SceneBounds]) -> Resu
                 let style = style(*index, format!("{}{method}", scene.name));
                 CourseBand { group: format!("scene-{index}"), band, style }
             });
-            // The bands of a scene tell where its nominal course is, and hide it from the others.
+            // The bands of a scene show where its nominal course is, which would hide the others.
             let (label, width) = if bands.is_some() { ("", 0.5) } else { (scene.name, 1.4) };
             let (group, hue) = (format!("scene-{index}-nominal"), Hue::Color(Color::of(*index)));
             let bands = bands.into_iter().collect();
@@ -63,7 +63,7 @@ pub fn overlay_svg(caption: Caption, name: &str, scenes: &[SceneBounds]) -> Resu
 pub(super) fn style(index: usize, label: String) -> Style {
     let dashes = DASHES[index % DASHES.len()];
     let dashes = (!dashes.is_empty()).then(|| dashes.to_vec());
-    // Beyond the palette colours are darker; so are the lines' widths.
+    // Beyond the palette, colours are darker, and lines wider.
     let edge = 1.5 + 0.4 * (index / PALETTE.len()) as f64;
     let slant = [45.0, -45.0][index % 2];
     Style { label, color: Color::of(index), edge, fill: 0.0, dashes, slant }
@@ -111,7 +111,7 @@ mod tests {
         for (index, name) in names.iter().enumerate() {
             assert!(svg.contains(&format!("color=\"{}\"", Color::of(index).hex())), "{name}");
         }
-        // Chebyshev is the method of those that have one, the third has none, and the legend says so.
+        // The first two have Chebyshev's method, the third has none, and the legend says so.
         for text in ["ideal (chebyshev)", "with friction (chebyshev)", "bare", "x3 [m]", "bound − nominal"] {
             assert!(svg.contains(text), "{text}");
         }

@@ -1,4 +1,4 @@
-//! Which files of a folder are ours: those that a run has written there, as it has written them.
+//! The list of our files in a folder: those that a run wrote there, if they are unchanged.
 
 use std::collections::BTreeMap;
 use std::io;
@@ -17,7 +17,7 @@ pub const SUMMARY: &str = "summary.json";
 /// The file of the proof of certified bounds.
 pub(super) const CERTIFICATE: &str = "certificate.jsonl";
 
-/// The report's file: of whatever run, it is made of the other files.
+/// The report's file: of any run, it is made of the other files.
 pub(super) const PAGE: &str = "report.html";
 
 /// The file that lists the scenes.
@@ -29,7 +29,7 @@ pub(super) const OWNED: &str = ".mbint.json";
 /// Version of the results' files: greater when a key or a column goes or changes its meaning. New ones do not count.
 pub(super) const SCHEMA: u32 = 1;
 
-/// What runs have written into a folder, and the next one may remove.
+/// Files that runs wrote into a folder, and that the next one may remove.
 #[derive(Default, Serialize, Deserialize)]
 #[serde(default)]
 pub(super) struct Owned {
@@ -40,7 +40,8 @@ pub(super) struct Owned {
 }
 
 impl Owned {
-    /// Nothing where there is no such list that can be read. Names of other folders' files are left out.
+    /// The list of a folder; empty if there is no such list that can be read. Names of other folders' files are
+    /// omitted.
     pub fn of(dir: &Path) -> Self {
         let mut own: Self =
             read(&dir.join(OWNED)).ok().and_then(|text| serde_json::from_slice(&text).ok()).unwrap_or_default();
@@ -49,13 +50,13 @@ impl Owned {
         own
     }
 
-    /// Files that are there as they were written.
+    /// Files that exist and are unchanged.
     pub fn unchanged(&self, dir: &Path) -> Vec<String> {
         let is_ours = |name: &&String| read(&dir.join(name)).is_ok_and(|bytes| sha256(&bytes) == self.files[*name]);
         self.files.keys().filter(is_ours).cloned().collect()
     }
 
-    /// As it is written.
+    /// The list in its file.
     ///
     /// # Errors
     /// Only if memory cannot be written to.
@@ -74,7 +75,7 @@ pub(super) fn sha256(bytes: &[u8]) -> String {
 /// A file of results: a regular file only, since a pipe may never end.
 ///
 /// # Errors
-/// Where it cannot be read.
+/// If it cannot be read.
 pub(super) fn read(path: &Path) -> io::Result<Vec<u8>> {
     regular(path, TUNING.largest_file)
 }

@@ -20,14 +20,14 @@ fn style(method: Method) -> Style {
     Style { label: label.to_owned(), color: Color(color), edge: 2.0, fill, dashes, slant }
 }
 
-/// Further series in the plot of an output, beside its bounds.
+/// Further series in the plot of an output, in addition to its bounds.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Beside<'a> {
-    /// What moves by less is a constant, as [`noise`] has it.
+    /// Range below which the output is constant, by [`noise`].
     pub noise: f64,
-    /// Of these, constant limits of the output.
+    /// Requirements, of which the constant limits of the output are drawn.
     pub requirements: &'a [RequirementSummary],
-    /// Of these, the band from the least to the greatest quantile.
+    /// Statistics, of which the band from the least to the greatest quantile is drawn.
     pub statistics: Option<&'a StatisticsResult>,
 }
 
@@ -58,7 +58,7 @@ pub fn plot_svg(
     courses_svg(caption, &Shown { limits: &limits, ..shown(output, noise, &[course]) })
 }
 
-/// The number of the quantiles' colour.
+/// Index of the quantiles' colour.
 const QUANTILES: usize = 5;
 
 /// The band from an output's least to its greatest quantile, and its name.
@@ -101,7 +101,7 @@ pub(super) fn shown<'a>(output: &'a OutputBounds, noise: f64, courses: &'a [Band
     }
 }
 
-/// Width below which an output counts as constant: rounding beside the largest of all outputs of its unit.
+/// Width below which an output counts as constant: rounding relative to the largest of all outputs of its unit.
 pub fn noise(bounds: &Bounds, output: &OutputBounds) -> f64 {
     let same = bounds.outputs.iter().filter(|other| other.unit == output.unit);
     let sizes = same.flat_map(|output| &output.nominal).filter(|x| x.is_finite()).map(|x| x.abs());
@@ -135,7 +135,7 @@ mod tests {
         (times.clone(), OutputBounds { name: "x3".into(), unit: "m".into(), display: None, nominal, bands })
     }
 
-    /// All that is written in a figure.
+    /// All texts of a figure.
     fn texts(svg: &str) -> Vec<String> {
         let document = roxmltree::Document::parse(svg).unwrap();
         let texts = document.descendants().filter(|node| node.has_tag_name("text"));
@@ -150,7 +150,7 @@ mod tests {
         assert_eq!(document.root_element().attribute("class"), Some("mbint-figure"));
         let find = |name: &'static str| document.descendants().filter(move |node| node.has_tag_name(name));
         let data: serde_json::Value = serde_json::from_str(find("metadata").next().unwrap().text().unwrap()).unwrap();
-        // What stands in the data has a group with a title, and the other way round.
+        // Every series of the data has a group with a title, and the other way round.
         let series: Vec<&str> = document.descendants().filter_map(|node| node.attribute("data-series")).collect();
         let listed: Vec<&str> =
             data["series"].as_array().unwrap().iter().map(|series| series["id"].as_str().unwrap()).collect();

@@ -1,9 +1,9 @@
-//! Replacement of files as one: at any instant a folder has older files or newer ones, never some of each.
+//! Replacement of files together: at any instant a folder has older files or newer ones, never a mixture.
 //!
 //! The new results are complete in a folder of its own before anything changes, and this folder then takes the name
-//! [`JOURNAL`]: from here on the replacement is decided. Older files are set aside in the journal, what says that they
-//! are complete first; then the new ones take their names, in their order. Whoever finds a journal completes the rest
-//! of it ([`finish`]). Where an older file cannot be set aside, all go back.
+//! [`JOURNAL`]: from here on the replacement is decided. Older files are set aside in the journal, first the file that
+//! reports their completeness; then the new ones take their names, in their order. The next run that finds a journal
+//! completes the rest of it ([`finish`]). If an older file cannot be set aside, all are restored.
 
 use std::fs::{self, File};
 use std::io::{self, ErrorKind, Write};
@@ -26,9 +26,9 @@ const PLAN: &str = "plan.json";
 /// Paths within the folder.
 #[derive(Default, Serialize, Deserialize)]
 struct Plan {
-    /// Of the new files, in the order in which they appear.
+    /// The new files, in the order in which they appear.
     new: Vec<String>,
-    /// Of files that go.
+    /// Files that are removed.
     gone: Vec<String>,
 }
 
@@ -39,7 +39,7 @@ pub(super) struct Replacement {
 }
 
 impl Replacement {
-    /// None so far, in a folder that is empty and on the destination's disk.
+    /// An empty set of files, in a folder that is empty and on the destination's disk.
     pub fn in_folder(folder: TempDir) -> io::Result<Self> {
         [NEW, OLD].iter().try_for_each(|name| fs::create_dir(folder.path().join(name)))?;
         Ok(Self { folder, plan: Plan::default() })
@@ -56,7 +56,7 @@ impl Replacement {
         &self.plan.new
     }
 
-    /// These files go.
+    /// Files that are removed.
     pub fn without(&mut self, gone: Vec<String>) {
         self.plan.gone = gone;
     }
@@ -64,7 +64,7 @@ impl Replacement {
     /// Decides the replacement in a folder.
     ///
     /// # Errors
-    /// Where a folder stands where a file shall, or the disk is full. Nothing has changed then.
+    /// If a folder has the name of a file, or the disk is full. Nothing has changed then.
     pub fn begin(self, dir: &Path) -> Result<(), ExportError> {
         for path in self.plan.new.iter().map(|name| dir.join(name)) {
             if path.symlink_metadata().is_ok_and(|there| there.is_dir()) {
@@ -77,7 +77,7 @@ impl Replacement {
             sync(&self.folder.path().join(name));
         }
         fs::rename(self.folder.path(), dir.join(JOURNAL)).map_err(failed)?;
-        // It has another name now, and stays.
+        // It has another name now, and is not deleted.
         let _ = self.folder.keep();
         sync(dir);
         Ok(())
@@ -90,7 +90,7 @@ impl Replacement {
     }
 }
 
-/// A file that changes its name; where it is not there, it has changed it already, or there was none.
+/// Renaming of a file; without the file `from`, it was renamed already, or there was none.
 #[derive(Debug)]
 struct Step {
     from: PathBuf,
@@ -108,7 +108,7 @@ impl Step {
     }
 
     fn back(&self) {
-        // A file that is there again is newer.
+        // An existing file of that name is newer.
         if !self.from.exists() {
             let _ = fs::rename(&self.to, &self.from);
         }
@@ -119,7 +119,7 @@ impl Step {
 fn steps(dir: &Path, plan: &Plan) -> [Vec<Step>; 2] {
     let journal = dir.join(JOURNAL);
     let new = |name: &str| Step { from: journal.join(NEW).join(name), to: dir.join(name) };
-    // One that has its name already is not an older file of that name.
+    // A new file that has its name already is not an older file of that name.
     let waiting: Vec<(usize, &String)> =
         plan.new.iter().enumerate().filter(|(_, name)| new(name).from.exists()).collect();
     let gone = (plan.new.len()..).zip(&plan.gone);
@@ -141,14 +141,14 @@ fn is_within(path: &str) -> bool {
 /// Completes a replacement that was decided, if there is one.
 ///
 /// # Errors
-/// Where an older file cannot be set aside: all are then as they were. Where a new one cannot take its name,
-/// the rest is left to who comes next.
+/// If an older file cannot be set aside: all are then restored. If a new one cannot take its name, the rest is left to
+/// the next run.
 pub(super) fn finish(dir: &Path) -> Result<(), ExportError> {
     let journal = dir.join(JOURNAL);
     let plan = match read(&journal.join(PLAN)) {
         Ok(plan) => plan,
         Err(error) if error.kind() == ErrorKind::NotFound => {
-            // The rest of a replacement that was done.
+            // The rest of a completed replacement.
             let _ = fs::remove_dir_all(journal);
             return Ok(());
         }
@@ -167,7 +167,7 @@ pub(super) fn finish(dir: &Path) -> Result<(), ExportError> {
     }
     index.iter().try_for_each(Step::run)?;
     sync(dir);
-    // A scene of which nothing is left.
+    // The folder of a scene that has no files any more.
     for folder in plan.gone.iter().filter_map(|name| Path::new(name).parent()).filter(|path| *path != Path::new("")) {
         let _ = fs::remove_dir(dir.join(folder));
     }
@@ -175,14 +175,14 @@ pub(super) fn finish(dir: &Path) -> Result<(), ExportError> {
     Ok(())
 }
 
-/// Removes a journal; a rest that cannot be removed is in nobody's way.
+/// Removes a journal; a rest that cannot be removed does no harm.
 fn remove(journal: &Path) {
-    // Without its plan it is none.
+    // Without its plan it is no journal.
     let _ = fs::remove_file(journal.join(PLAN));
     let _ = fs::remove_dir_all(journal);
 }
 
-/// Writes a folder to the disk, where the system does that.
+/// Flushes a folder to the disk, if the system does that.
 fn sync(folder: &Path) {
     let _ = File::open(folder).map(|folder| folder.sync_all());
 }
@@ -232,7 +232,7 @@ mod tests {
             all[..end].iter().for_each(|step| step.run().unwrap());
             let [old, new] = found(dir.path());
             assert!(old.is_empty() || new.is_empty(), "{end}: {old:?}, {new:?}");
-            // What says that all are there says it only then.
+            // The summary exists only when all others do.
             let says = |names: &[String]| names.iter().any(|name| name == SUMMARY);
             assert!((!says(&old) || old.len() == 6) && (!says(&new) || new.len() == 4), "{end}: {old:?}, {new:?}");
             // Killed once more, while it removes the journal.
@@ -251,7 +251,7 @@ mod tests {
     #[test]
     fn where_a_file_cannot_be_set_aside_all_go_back() {
         let dir = decided();
-        // All others are aside when the last cannot be.
+        // All others are set aside when the last cannot be.
         let plan: Plan = serde_json::from_slice(&fs::read(dir.path().join(JOURNAL).join(PLAN)).unwrap()).unwrap();
         let [aside, _] = steps(dir.path(), &plan);
         let last = aside.last().unwrap();

@@ -12,7 +12,7 @@ pub fn shown(unit: ShownUnit, value: f64) -> String {
     format!("{} {}", rounded(significant(unit.of_si(value), 6)), unit.text).trim_end().to_owned()
 }
 
-/// As few digits as tell a number from its neighbours but for rounding.
+/// The fewest digits that distinguish a number from its neighbours except for rounding.
 pub fn rounded(value: f64) -> String {
     let text = format!("{value:.12e}");
     let short = text.parse::<f64>().unwrap_or(value);

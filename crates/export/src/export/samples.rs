@@ -11,14 +11,14 @@ use super::error::ExportError;
 use super::tuning::TUNING;
 use crate::results::{SampleFormat, SampleTable};
 
-/// Gets values (sample, row, output) of consecutive samples.
+/// Takes values (sample, row, output) of consecutive samples.
 pub type Keep<'k> = dyn FnMut(&[f64]) -> Result<(), ExportError> + 'k;
 
-/// Writes all samples; the file appears when it is whole, and `-` is standard output. `fill` gives the values, and says
-/// whether these were all.
+/// Writes all samples; the file appears when it is complete, and `-` is standard output. `fill` passes the values, and
+/// returns whether these were all.
 ///
 /// # Errors
-/// Where the file cannot be written, and those of `fill`.
+/// If the file cannot be written, and those of `fill`.
 pub fn write_samples<E: From<ExportError>>(
     path: &Path,
     format: SampleFormat,
@@ -108,7 +108,7 @@ fn npz<E: From<ExportError>>(
     Ok(Some(archive.finish().map_err(|error| failed(io::Error::other(error)))?))
 }
 
-/// An array of the archive: a header of NumPy's format 1.0, then what `fill` writes.
+/// Writes an array of the archive: a header of NumPy's format 1.0, then the output of `fill`.
 fn array<T, E: From<ExportError>>(
     archive: &mut ZipArchiveWriter<BufWriter<NamedTempFile>>,
     name: &str,
@@ -127,7 +127,7 @@ fn array<T, E: From<ExportError>>(
     Ok(filled)
 }
 
-/// What stands before an array's values; together a multiple of 64 bytes.
+/// Header of an array, a multiple of 64 bytes.
 fn header(kind: &str, shape: &[usize]) -> Vec<u8> {
     let shape: String = shape.iter().map(|length| format!("{length}, ")).collect();
     let text = format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': ({}), }}", shape.trim_end());
@@ -150,7 +150,7 @@ fn floats(into: &mut dyn Write, values: impl Iterator<Item = f64>) -> io::Result
     into.write_all(&bytes)
 }
 
-/// Columns: number of the sample, its parameters, time, outputs; a row for each time of each sample.
+/// Columns: index of the sample, its parameters, time, outputs; a row for each time of each sample.
 fn csv<E: From<ExportError>>(
     file: BufWriter<NamedTempFile>,
     table: &SampleTable,

@@ -17,9 +17,9 @@ use crate::results::OutputBounds;
 
 /// All scenes' bounds in one table as CSV, in long form: a row for each scene, output, method and time.
 ///
-/// Columns: `scene`, `output`, `unit`, `method`, `t`, `nominal`, `lower`, `upper`, `error`, `unresolved` (`true` where
-/// the row is unreliable) and, if some scene covers a part of its box only, `covered`, the share of the box that the
-/// row covers. An output without bands has one row for each time, without a method. Numbers are as in `bounds.csv`.
+/// Columns: `scene`, `output`, `unit`, `method`, `t`, `nominal`, `lower`, `upper`, `error`, `unresolved` (`true` if the
+/// row is unreliable) and, if some scene covers a part of its box only, `covered`, the share of the box that the row
+/// covers. An output without bands has one row for each time, without a method. Numbers are as in `bounds.csv`.
 ///
 /// # Errors
 /// Only if memory cannot be written to.
@@ -89,7 +89,7 @@ pub fn write_scenes(
     files.put_in_place()
 }
 
-/// Removes what compares scenes, since one of them is about to be replaced.
+/// Removes the comparison of scenes, since one of them is about to be replaced.
 ///
 /// # Errors
 /// As [`write_results`](super::write_results).
@@ -106,7 +106,7 @@ struct Listed<'s> {
     model: &'s str,
     /// Folders of the scenes that have results, in the model's order.
     scenes: Vec<String>,
-    /// All files beside them, which the next run replaces.
+    /// All files next to the scenes' folders, which the next run replaces.
     files: Vec<String>,
 }
 

@@ -1,4 +1,4 @@
-//! `statistics.csv`: how the outputs are distributed over time.
+//! `statistics.csv`: the distributions of the outputs over time.
 
 use csv::WriterBuilder;
 
@@ -25,9 +25,9 @@ pub fn reduced_statistics_csv(statistics: &StatisticsResult) -> Result<Vec<u8>, 
 }
 
 /// The table of all statistics as CSV. Columns: `t`, then for each output `x3.mean`, `x3.deviation`, `x3.q0.00135`, …
-/// each followed by its error (`x3.mean.error`: half the 95 % confidence interval, and what surrogate and steps may
-/// add), `x3.linear` and `x3.rss`, and last `unresolved`, the outputs whose numbers are unreliable in the row. Unknown
-/// values are `NaN`.
+/// each followed by its error (`x3.mean.error`: half the 95 % confidence interval, plus possible errors of surrogate
+/// and steps), `x3.linear` and `x3.rss`, and last `unresolved`, the outputs whose numbers are unreliable in the row.
+/// Unknown values are `NaN`.
 ///
 /// # Errors
 /// Only if memory cannot be written to.

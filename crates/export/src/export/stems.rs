@@ -6,7 +6,7 @@ use std::collections::HashSet;
 /// `name` as a file name without extension that is valid on every system: letters, digits, `_`, `-` and `.` stay, the
 /// rest becomes `_`.
 pub fn file_stem(name: &str) -> String {
-    /// Names of devices on Windows, whatever their extension.
+    /// Names of devices on Windows, with any extension.
     const RESERVED: [&str; 6] = ["con", "prn", "aux", "nul", "com", "lpt"];
 
     let keep = |c: char| if c.is_alphanumeric() || "_-.".contains(c) { c } else { '_' };
@@ -24,7 +24,7 @@ pub fn file_stem(name: &str) -> String {
     stem
 }
 
-/// [`file_stem`]s, made unique (also where upper and lower case are one) by `-2`, `-3`, … on the later ones.
+/// [`file_stem`]s, made unique (also without distinction of case) by `-2`, `-3`, … on the later ones.
 pub(super) fn unique_stems<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
     let mut taken = HashSet::new();
     let mut unique = |name: &str| {

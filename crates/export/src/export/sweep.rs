@@ -22,14 +22,14 @@ pub struct Swept<'a> {
     pub name: &'a str,
     /// Its unit, as models write it; empty for a number.
     pub unit: &'a str,
-    /// What one of the unit is in SI.
+    /// Value of one unit in SI.
     pub si: f64,
 }
 
 /// Bounds of an output, or of a reduced output, for several values of a parameter.
 #[derive(Clone, Copy, Debug)]
 pub struct SweptBounds<'a> {
-    /// What tells it from others, such as a second parameter's value; empty of one alone.
+    /// Distinction from others, such as a second parameter's value; empty if there is only one.
     pub label: &'a str,
     /// The parameter's values in SI, ascending.
     pub values: &'a [f64],
@@ -84,20 +84,19 @@ pub struct TradeAxis<'a> {
     pub unit: &'a str,
 }
 
-/// A point of a trade-off with a name, such as the tolerances of now.
+/// A point of a trade-off with a name, such as the present tolerances.
 #[derive(Clone, Copy, Debug)]
 pub struct TradeMark<'a> {
     /// For people.
     pub label: &'a str,
-    /// Where it is.
+    /// Its position, in the units of the axes.
     pub at: (f64, f64),
 }
 
 /// Size on the page, px.
 const SIZE: (f64, f64) = (700.0, 460.0);
 
-/// What one quantity costs of another as an SVG document: a line through points that ascend in x, and points with
-/// names.
+/// One quantity against another as an SVG document: a line through points that ascend in x, and points with names.
 pub fn trade_svg(
     caption: Caption,
     title: &str,
@@ -118,9 +117,9 @@ pub fn trade_svg(
     drawn.extend(line.iter().map(|&at| hue.paint(Group::new().add(dot(panel.place(at.0, at.1), 2.6)), "dot")));
     for (index, mark) in marks.iter().enumerate() {
         let at = panel.place(mark.at.0, mark.at.1);
-        // To the side where there is room.
+        // On the side with more room.
         let (beside, anchor) = if at.0 > 0.7 * SIZE.0 { (-10.0, Anchor::End) } else { (10.0, Anchor::Start) };
-        // Two that are near are told apart: one above, one below.
+        // Labels of near points alternate: one above, one below.
         let height = if index % 2 == 0 { -12.0 } else { 22.0 };
         let label = text(mark.label, (at.0 + beside, at.1 + height), anchor);
         let marked = Group::new().add(Title::new(mark.label)).add(dot(at, 5.0)).add(label);

@@ -17,17 +17,17 @@ use crate::results::{Band, Method, OutputBounds, ReducedBand, ReducedSummary, Re
 pub struct SweepAxis {
     /// Name of the parameter.
     pub name: String,
-    /// As the command line gives it; empty for the model's own.
+    /// Unit on the command line; empty for the model's own.
     pub unit: String,
     /// Its values, in the unit.
     pub values: Vec<f64>,
 }
 
-/// Results for one value of each.
+/// Results for one value of each axis.
 pub struct SweepPoint {
     /// One value per axis, in the unit of the axis.
     pub values: Vec<f64>,
-    /// Absent where the run failed.
+    /// Absent if the run failed.
     pub summary: Option<Summary>,
 }
 
@@ -69,8 +69,8 @@ pub fn write_sweep(dir: &Path, sweep: &Sweep) -> Result<Vec<PathBuf>, ExportErro
     files.put_in_place()
 }
 
-/// Columns: the parameters; of each reduced output nominal, lower, upper, error and method; of each requirement margin,
-/// error and verdict.
+/// Columns: the parameters; for each reduced output nominal, lower, upper, error and method; for each requirement
+/// margin, error and verdict.
 fn table(sweep: &Sweep) -> Result<Vec<u8>, csv::Error> {
     let mut writer = csv::WriterBuilder::new().from_writer(Vec::new());
     let mut headings: Vec<String> = sweep.axes.iter().map(|axis| axis.name.clone()).collect();

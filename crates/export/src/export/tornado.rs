@@ -11,7 +11,7 @@ use super::rounded::{rounded, significant};
 use super::tuning::TUNING;
 use crate::grammar::display_unit::ShownUnit;
 
-/// Width on the page, px, and heights of a bar and of what stands above and below all.
+/// Width on the page, px, heights of a bar, and of the space above and below all.
 const WIDTH: f64 = 760.0;
 const BAR: f64 = 22.0;
 const TOP: f64 = 40.0;
@@ -28,7 +28,7 @@ pub(super) struct Bar {
 }
 
 impl Bar {
-    /// Of a parameter with its derivative in shown units, and its influence in SI.
+    /// The bar of a parameter, with its derivative in shown units and its influence in SI.
     pub fn new(name: &str, derivative: (f64, &str), influence: f64) -> Self {
         let label = format!("{} {}", rounded(significant(derivative.0, 4)), derivative.1).trim_end().to_owned();
         Self { name: name.to_owned(), label, influence }
@@ -46,7 +46,7 @@ pub fn derivative_in(above: ShownUnit, below: ShownUnit, by: f64) -> (f64, Strin
     (by / above.si * below.si, unit)
 }
 
-/// A unit below a line.
+/// A unit as a denominator, in parentheses if it is composed.
 fn bracketed(unit: &str) -> String {
     if unit.contains(['*', '/', ' ']) { format!("({unit})") } else { unit.to_owned() }
 }

@@ -11,7 +11,7 @@ use crate::results::{FormulationVerification, PowerBalance, Verification};
 /// Writes the page.
 ///
 /// # Errors
-/// Where the file cannot be written.
+/// If the file cannot be written.
 pub fn write_verification(path: &Path, found: &Verification) -> Result<(), ExportError> {
     std::fs::write(path, page(found)).map_err(|source| ExportError::Write { path: path.to_owned(), source })
 }

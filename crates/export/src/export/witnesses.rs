@@ -1,4 +1,4 @@
-//! `witnesses.csv` and `witnesses.points.csv`: samples at which outputs are least and largest.
+//! `witnesses.csv` and `witnesses.points.csv`: samples with the least and the largest outputs.
 
 use csv::WriterBuilder;
 
@@ -9,7 +9,7 @@ use crate::results::{Bounds, ParameterSummary, Witness};
 pub const POINTS: &str = "witnesses.points.csv";
 
 /// The table: `t`, `output`, `end` (`lower` or `upper`), `value`, `point`, and the value of each parameter, in SI.
-/// `point` is the number of the sample in [`points_csv`], from 1 on.
+/// `point` is the number of the sample in [`points_csv`], counted from 1.
 ///
 /// # Errors
 /// Only if memory cannot be written to.

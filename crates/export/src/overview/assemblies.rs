@@ -1,4 +1,4 @@
-//! Which tolerances of instances are one for all of them, for people.
+//! Tolerances that all instances of an assembly share, for people.
 
 use super::tuning::TUNING;
 use super::words::count;

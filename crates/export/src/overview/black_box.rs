@@ -1,4 +1,4 @@
-//! A program that answered instead of a mechanism, for people.
+//! A program that answers instead of a mechanism, for people.
 
 use super::tuning::TUNING;
 use super::words::count;
@@ -11,7 +11,7 @@ pub fn heading(own: &BlackBoxSummary) -> String {
     format!("a black box, `{}`", harmless(&own.command.join(" ")))
 }
 
-/// How far a program's answers are to be trusted; `errors` are those of all bands.
+/// Reliability of a program's answers; `errors` are those of all bands.
 pub fn lines(own: &BlackBoxSummary, errors: &[ErrorSummary]) -> String {
     let steps = match &own.refined_by {
         Some(parameter) => format!("the error of its own steps was found by finer `{parameter}`"),

@@ -1,4 +1,4 @@
-//! What excitations do as constants, and as any functions, for people; random ones.
+//! Effects of excitations as constants and as arbitrary functions, for people; random ones.
 
 use super::tuning::TUNING;
 use super::words::digits;
@@ -11,7 +11,7 @@ pub fn lines(summary: &Summary) -> String {
     limited(&summary.excitations) + &random(&summary.realisations)
 }
 
-/// A line where bounds have one realisation of random excitations.
+/// A line if bounds have one realisation of random excitations.
 fn random(realisations: &[String]) -> String {
     let names: Vec<&str> = realisations.iter().map(String::as_str).collect();
     match names.as_slice() {

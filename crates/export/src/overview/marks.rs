@@ -1,5 +1,5 @@
-//! Styles of a text for people. They are not in a text as a terminal's own sequences, since texts hold names from
-//! files, but as marks, which become those sequences, or nothing, when the text is shown.
+//! Styles of a text for people. Texts contain names from files, so styles are not sequences of a terminal in them, but
+//! marks, which become those sequences, or nothing, when the text is shown.
 
 use std::fmt::{self, Write};
 
@@ -7,7 +7,7 @@ use std::fmt::{self, Write};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Mark(char);
 
-/// Ends every style. Marks are code points that Unicode keeps free of characters.
+/// Ends every style. Marks are code points that Unicode reserves as noncharacters.
 pub const END: Mark = Mark('\u{fdd0}');
 
 /// Headings.

@@ -36,7 +36,7 @@ fn errors(errors: &[ErrorSummary]) -> String {
     }
 }
 
-/// What an analysis of one configuration found, and what an equilibrium is.
+/// Results of an analysis of one configuration, and the kind of an equilibrium.
 fn analysis(analysis: &AnalysisSummary) -> String {
     let number = |value: f64| if value.is_nan() { "unknown".to_owned() } else { format!("{value:.5e}") };
     let mut table = Table::new([
@@ -103,7 +103,7 @@ fn contributions(contributions: &[ContributionSummary]) -> String {
     if text.is_empty() { text } else { text + "\n" }
 }
 
-/// A start that is a choice, singular configurations, and reactions that equilibrium does not determine.
+/// A start that is not unique, singular configurations, and reactions that equilibrium does not determine.
 fn singular(summary: &Summary) -> String {
     let mut text = String::new();
     if !summary.shared_start.is_empty() {

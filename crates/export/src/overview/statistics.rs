@@ -1,4 +1,4 @@
-//! Statistics for people, beside the bounds: worst case first.
+//! Statistics for people, in addition to the bounds: worst case first.
 
 use super::stack;
 use super::table::{Align, Table};
@@ -88,7 +88,7 @@ pub fn statistics(summary: &Summary) -> String {
     )
 }
 
-/// Table of the reduced outputs, with every quantile; nothing where there are none.
+/// Table of the reduced outputs, with every quantile; empty if there are none.
 fn reduced(found: &StatisticsSummary) -> String {
     if found.reduced.is_empty() {
         return String::new();
@@ -123,7 +123,7 @@ fn reduced(found: &StatisticsSummary) -> String {
     table.render(2)
 }
 
-/// How many fulfil each requirement.
+/// The share that fulfils each requirement.
 pub fn yields<'y>(found: impl IntoIterator<Item = &'y crate::results::YieldSummary>) -> String {
     let line = |of: &crate::results::YieldSummary| {
         let [least, most] = of.ppm_interval;
@@ -149,18 +149,18 @@ pub fn yields<'y>(found: impl IntoIterator<Item = &'y crate::results::YieldSumma
     found.into_iter().map(line).collect()
 }
 
-/// As many digits as a high yield needs.
+/// A share in per cent, with the digits that a high yield needs.
 fn percent(share: f64) -> String {
     let digits = if share > 0.9999 && share < 1.0 { 8 } else { 4 };
     format!("{:.digits$}", 100.0 * share)
 }
 
-/// Parts per million: whole ones, fractions of few.
+/// Parts per million: an integer, or three digits below 100.
 fn parts(ppm: f64) -> String {
     if ppm >= 100.0 || ppm == 0.0 { format!("{ppm:.0}") } else { format!("{ppm:.2e}") }
 }
 
-/// Digits behind the point that show four of a deviation; `None` where an exponent is better.
+/// Decimals that show four digits of a deviation; `None` if an exponent is better.
 fn decimals(deviation: f64) -> Option<usize> {
     let digits = 3.0 - symdiff::math::log10(deviation).floor();
     if deviation == 0.0 { Some(6) } else { (-3.0..=8.0).contains(&digits).then(|| digits.max(0.0) as usize) }
@@ -180,7 +180,7 @@ fn laws(found: &StatisticsSummary) -> String {
     format!("  distributions: {}{outside}\n", laws.join(", "))
 }
 
-/// Whether there is a time at which numbers are: a stack of dimensions has none.
+/// Whether the numbers have a time: a stack of dimensions has none.
 fn has_time(summary: &Summary) -> bool {
     summary.analysis.as_ref().is_none_or(|analysis| analysis.kind != "dimensions")
 }

@@ -2,12 +2,12 @@
 
 use super::marks::BOLD;
 
-/// To which side a column's cells are set.
+/// Alignment of a column's cells.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Align {
-    /// Texts.
+    /// To the left: texts.
     Left,
-    /// Numbers.
+    /// To the right: numbers.
     Right,
 }
 
@@ -18,7 +18,7 @@ pub struct Table<const N: usize> {
 }
 
 impl<const N: usize> Table<N> {
-    /// Without rows yet.
+    /// A table without rows.
     pub fn new(headings: [(&'static str, Align); N]) -> Self {
         Self { headings, rows: Vec::new() }
     }
@@ -28,8 +28,8 @@ impl<const N: usize> Table<N> {
         self.rows.push(cells);
     }
 
-    /// Lines, indented, two spaces between columns; nothing stands at their ends. Headings are bold, unless all are
-    /// empty: then there is no line for them.
+    /// Lines, indented, two spaces between columns, no trailing spaces. Headings are bold; if all are empty, there is
+    /// no line for them.
     pub fn render(&self, indent: usize) -> String {
         let widths: [usize; N] = std::array::from_fn(|i| {
             let cells = self.rows.iter().map(|row| row[i].chars().count());

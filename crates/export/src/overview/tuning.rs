@@ -5,21 +5,21 @@ use symdiff::constants::tuning;
 tuning! {
     /// Results for people, on the terminal.
     "overview" {
-        /// Most names of parts that share a tolerance.
+        /// Most names of parts with a shared tolerance.
         named_assemblies: usize = 8, moves "the overview of a run";
-        /// Share of a band's width that held-out answers of a smooth response do not miss a surrogate by.
+        /// Error of a surrogate, as a share of the band's width, above which a program answers abruptly.
         abrupt: f64 = 0.1, moves "warnings of programs that answer abruptly";
         /// Most lines about excitations: they fit a screen.
         excitation_lines: usize = 12, moves "the overview of a run";
-        /// Where functions move an output no further than this, constants are enough.
+        /// Ratio of the ranges under functions and constants up to which constants are enough.
         constants_are_enough: f64 = 1.005, moves "the overview of a run";
         /// Most rows of errors: they fit a screen.
         rows_of_errors: usize = 24, moves "the overview of a run";
         /// Most rows of an analysis: they fit a screen.
         rows_of_analysis: usize = 30, moves "the overview of a run";
-        /// Parameters that are named as those which contribute most to an output.
+        /// Parameters named as those that contribute most to an output.
         parameters_that_matter: usize = 3, moves "the overview of a run";
-        /// Most singular configurations whose times are told, and most events.
+        /// Most singular configurations whose times are given, and most events.
         singular_configurations: usize = 4, moves "the overview of a run";
         /// Most names of constraints, coordinates or outputs in a line.
         names_in_line: usize = 6, moves "the overview of a run";

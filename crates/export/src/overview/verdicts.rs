@@ -10,7 +10,7 @@ pub fn band(reduced: &ReducedSummary) -> Option<&ReducedBand> {
     foremost(&reduced.bands, |band: &ReducedBand| !band.unresolved)
 }
 
-/// Both tables; nothing where there is nothing to show.
+/// Both tables; empty if there is nothing to show.
 pub fn tables(summary: &Summary) -> String {
     let mut text = String::new();
     if !summary.reduced.is_empty() {
@@ -63,7 +63,7 @@ fn reduced(all: &[ReducedSummary]) -> String {
     table.render(2)
 }
 
-/// A share of the box, at least and at most.
+/// A share of the box, as its least and largest value.
 fn of_box(share: [f64; 2]) -> String {
     let [least, most] = share.map(|share| format!("{:.1}", 100.0 * share));
     if least == most { format!("{least} % of the box") } else { format!("{least} to {most} % of the box") }
@@ -97,7 +97,7 @@ pub fn requirements(all: &[RequirementSummary]) -> String {
     table.render(2)
 }
 
-/// What shows that a requirement is violated, and what would decide it.
+/// Proofs of violated requirements, and means that would decide the undecided ones.
 fn notes(all: &[RequirementSummary]) -> String {
     let mut text = String::new();
     for own in all {

@@ -1,4 +1,4 @@
-//! What to know before believing the results of a run.
+//! Warnings to read before believing the results of a run.
 
 use super::tuning::TUNING;
 use super::words::{count, digits};
@@ -17,7 +17,7 @@ pub struct Warning {
 }
 
 impl Warning {
-    /// One that has a page.
+    /// A warning that has a page.
     fn coded(code: Code, text: String) -> Self {
         Self { code: Some(code), text }
     }
@@ -37,7 +37,7 @@ pub fn warnings(bounds: &Bounds, summary: &Summary) -> Vec<Warning> {
     overlaps.chain(all.into_iter().flatten().map(|text| Warning { code: None, text })).collect()
 }
 
-/// Surfaces that a start leaves within one another.
+/// Surfaces that overlap at the start.
 fn overlaps_at_start(found: &StartOverlap) -> Warning {
     let text = format!(
         "the surfaces of `{}` overlap by {} mm at the nominal start and throw each other apart: let the bodies start outside of each \
@@ -48,7 +48,7 @@ fn overlaps_at_start(found: &StartOverlap) -> Warning {
     Warning::coded(Code::OverlapsAtStart, text)
 }
 
-/// Which bounds are unreliable, and from when.
+/// Unreliable bounds, with the times from which on they are.
 fn unreliable(summary: &Summary) -> Option<String> {
     let mut bands: Vec<(f64, String)> = summary
         .errors
@@ -85,7 +85,7 @@ fn rounded(time: f64) -> f64 {
     (1e9 * time).round() / 1e9
 }
 
-/// Surfaces that a contact does not hold apart any more.
+/// Surfaces that a contact no longer keeps apart.
 fn too_deep(found: &TooDeep) -> String {
     let TooDeep { contact, time, depth, deepest } = found;
     let (time, deepest) = (rounded(*time), digits(1e3 * deepest));
@@ -112,7 +112,7 @@ fn damped(summary: &Summary) -> Option<String> {
     ))
 }
 
-/// The part of the box that the bounds cover, if it is not all of it.
+/// The part of the box that the bounds cover, if that is not all.
 fn excluded(bounds: &Bounds, summary: &Summary) -> Option<String> {
     let least = bounds.covered.iter().copied().fold(1.0, f64::min);
     if least == 1.0 {
@@ -161,7 +161,7 @@ fn is_resolved(own: &ReducedSummary) -> bool {
     own.bands.is_empty() || own.bands.iter().any(|band| !band.unresolved && band.error.is_finite())
 }
 
-/// Which reduced outputs and statistics are unreliable.
+/// The unreliable reduced outputs and statistics.
 fn unreliable_numbers(summary: &Summary) -> Option<String> {
     let names = unanswered(summary);
     let (first, others) = names.split_first()?;

@@ -1,4 +1,4 @@
-//! Numbers and counts as people write them.
+//! Numbers and counts in words.
 
 /// `1 step`, `2 steps`, `no steps`.
 pub fn count(n: usize, one: &str, many: &str) -> String {

@@ -1,4 +1,4 @@
-//! What outputs change by where a parameter rises, row by row, as a report shows it at its cursor.
+//! Derivatives of outputs by parameters, row by row, which a report shows at its cursor.
 
 use serde::Serialize;
 
@@ -11,7 +11,7 @@ use crate::results::{Bounds, OutputDerivatives, Summary};
 /// Derivatives of a run's outputs.
 #[derive(Serialize)]
 pub(super) struct PackedDerivatives<'r> {
-    /// Of the rows, s.
+    /// Times of the rows, s.
     times: String,
     outputs: Vec<OfOutput<'r>>,
 }
@@ -20,22 +20,22 @@ pub(super) struct PackedDerivatives<'r> {
 struct OfOutput<'r> {
     name: &'r str,
     unit: &'r str,
-    /// The largest influence first.
+    /// Sorted by influence, the largest first.
     parameters: Vec<OfParameter<'r>>,
 }
 
 #[derive(Serialize)]
 struct OfParameter<'r> {
     name: &'r str,
-    /// Of the derivative.
+    /// Unit of the derivative.
     unit: String,
-    /// Half of the parameter's interval; times the derivative it is the influence of the tolerance.
+    /// Half of the parameter's interval; multiplied by the derivative it is the influence of the tolerance.
     half_width: f64,
     /// By row, in the units in which people see both.
     values: String,
 }
 
-/// Of all outputs on which a parameter has an influence; `None` where there are no derivatives.
+/// Derivatives of all outputs on which a parameter has an influence; `None` without any.
 pub(super) fn packed_derivatives<'r>(bounds: &'r Bounds, summary: &'r Summary) -> Option<PackedDerivatives<'r>> {
     let outputs: Vec<OfOutput> = bounds.derivatives.iter().filter_map(|own| of_output(own, bounds, summary)).collect();
     (!outputs.is_empty()).then(|| PackedDerivatives { times: floats(&bounds.times), outputs })
@@ -47,7 +47,7 @@ fn of_output<'r>(own: &OutputDerivatives, bounds: &'r Bounds, summary: &'r Summa
     let count = summary.parameters.len();
     let by = |axis: usize| own.by_parameters.iter().skip(axis).step_by(count).copied();
     let half = |axis: usize| 0.5 * (summary.parameters[axis].upper - summary.parameters[axis].lower);
-    // NaN tells nothing of the rows before it.
+    // `max` skips rows with NaN.
     let influence = |axis: usize| half(axis) * by(axis).map(f64::abs).fold(0.0, f64::max);
     let mut axes: Vec<(usize, f64)> = (0..count).map(|axis| (axis, influence(axis))).collect();
     axes.retain(|(_, influence)| *influence > 0.0);

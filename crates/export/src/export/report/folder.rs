@@ -15,10 +15,10 @@ use crate::export::owned::{PAGE, SCENES, SUMMARY, read};
 use crate::export::stack::FIGURES;
 use crate::export::stems::unique_stems;
 
-/// Writes `report.html` again from the results in a folder: of a model, or of its scenes. Returns its path.
+/// Writes `report.html` again from the results in a folder, of a model or of its scenes. Returns its path.
 ///
 /// # Errors
-/// Where the folder has no results, or cannot be written into.
+/// If the folder has no results, or cannot be written into.
 pub fn write_report(dir: &Path) -> Result<PathBuf, ExportError> {
     settle(dir)?;
     let text = match dir.join(SCENES).is_file() {
@@ -38,10 +38,10 @@ pub fn write_report(dir: &Path) -> Result<PathBuf, ExportError> {
     Ok(dir.join(PAGE))
 }
 
-/// The article of the results in a folder, as a page of reports has it: for a page that is served.
+/// The article of the results in a folder, as in a page of reports, for a page that is served.
 ///
 /// # Errors
-/// Where the folder has no results, or they cannot be read.
+/// If the folder has no results, or they cannot be read.
 pub fn results_article(dir: &Path) -> Result<String, ExportError> {
     Ok(content(0, &scene_of_folder(dir)?, 1))
 }
@@ -49,7 +49,7 @@ pub fn results_article(dir: &Path) -> Result<String, ExportError> {
 /// The page of scenes whose results are in folders of a folder.
 ///
 /// # Errors
-/// Where one of them cannot be read.
+/// If one of them cannot be read.
 pub(in crate::export) fn page_of_folders(dir: &Path, model: &str, folders: &[String]) -> Result<String, ExportError> {
     let scenes = folders.iter().map(|folder| scene_of_folder(&dir.join(folder))).collect::<Result<Vec<_>, _>>()?;
     let scenes: Vec<PageScene> = scenes
@@ -59,10 +59,10 @@ pub(in crate::export) fn page_of_folders(dir: &Path, model: &str, folders: &[Str
     Ok(page(model, &scenes))
 }
 
-/// What a page shows of the results in a folder.
+/// Contents of a page for the results in a folder.
 ///
 /// # Errors
-/// Where one of the files cannot be read.
+/// If one of the files cannot be read.
 pub(in crate::export) fn scene_of_folder(dir: &Path) -> Result<PageScene, ExportError> {
     settle(dir)?;
     if !dir.join(SUMMARY).exists() {
@@ -85,7 +85,7 @@ pub(in crate::export) fn scene_of_folder(dir: &Path) -> Result<PageScene, Export
         output: output.to_owned(),
         plots: files.into_iter().filter_map(svg).collect(),
     };
-    // Of one configuration, outputs have no plots.
+    // Outputs of one configuration have no plots.
     let figures = responses.chain(outputs).map(figure).filter(|figure| !figure.plots.is_empty()).collect();
     Ok(PageScene { name: text(&summary, "model").to_owned(), figures, motion, summary })
 }

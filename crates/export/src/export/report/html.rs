@@ -1,4 +1,4 @@
-//! Text of others in a page: names, messages and models, which may hold anything.
+//! Text of others in a page: names, messages and models, with arbitrary contents.
 
 use data_encoding::BASE64;
 use serde_json::Value;
@@ -21,14 +21,15 @@ pub(super) fn escaped(text: &str) -> String {
     safe
 }
 
-/// JSON inside a script element, which nothing in it can end.
+/// JSON inside a script element, without anything that could end the element.
 pub(super) fn script_json(value: &Value) -> String {
-    // Only in strings do these occur; what a browser reads there is the same.
+    // These occur in strings only; a browser reads the escapes as the same characters.
     let json = value.to_string();
     json.replace('<', "\\u003c").replace('>', "\\u003e").replace('\u{2028}', "\\u2028").replace('\u{2029}', "\\u2029")
 }
 
-/// An SVG document as an element of a page: without its declaration, its identifiers apart from those of other figures.
+/// An SVG document as an element of a page: without its declaration, its identifiers distinct from those of other
+/// figures.
 pub(super) fn inline_svg(document: &str, prefix: &str) -> String {
     let start = document.find("<svg").unwrap_or(0);
     let mut text = document[start..].trim_end().to_owned();
@@ -43,13 +44,13 @@ pub(super) fn inline_svg(document: &str, prefix: &str) -> String {
     text
 }
 
-/// Elements of our own figures, and those of them that have nothing but text.
+/// Elements of our own figures, and those among them that contain text only.
 const ELEMENTS: [&str; 13] =
     ["svg", "g", "path", "rect", "circle", "line", "clipPath", "pattern", "defs", "text", "title", "style", "metadata"];
 const TEXTS: [&str; 4] = ["text", "title", "style", "metadata"];
 
-/// Whether an SVG document is but a figure as we write them: nothing in it acts, refers to anything elsewhere, or is
-/// read by a browser in another way than here. Files of a folder may be anyone's.
+/// Whether an SVG document is only a figure as we write them: nothing in it acts, refers to anything elsewhere, or is
+/// parsed by a browser differently. Files of a folder may be anyone's.
 pub(super) fn is_figure(document: &str) -> bool {
     let start = document.find("<svg").unwrap_or(0);
     let text = &document[start..];

@@ -1,4 +1,4 @@
-//! `report.html`: a run's results to be looked at. The page is made of the other files of the results alone, so that it
+//! `report.html`: a run's results to be viewed. The page is made of the other files of the results alone, so that it
 //! can be made again from them; `motion.json` has the rest.
 
 mod derivatives;

@@ -1,4 +1,4 @@
-//! `motion.json`: what a report shows that no other file of a run has. The mechanism, its motion and the model's text.
+//! `motion.json`: contents of a report that no other file of a run has. The mechanism, its motion and the model's text.
 
 use serde::Serialize;
 
@@ -10,19 +10,19 @@ use crate::results::{
     Bounds, Drawing, Motion, MotionPolynomials, MovingForce, ParameterSummary, Poses, Summary, WorstMotion,
 };
 
-/// Its name.
+/// Name of the file.
 pub(in crate::export) const MOTION: &str = "motion.json";
 
-/// What a report is made of beside the other files of a run.
+/// Parts of a report in addition to the other files of a run.
 #[derive(Debug)]
 pub struct ReportParts {
-    /// What the model says of itself.
+    /// Description of the model.
     pub description: Option<String>,
     /// The files that the model was read from: names and texts.
     pub texts: Vec<(String, String)>,
     /// The motion, or why there is none.
     pub motion: Result<Motion, String>,
-    /// Whether `report.html` is written beside the other files; scenes have one together.
+    /// Whether `report.html` is written in addition to the other files; scenes share one.
     pub page: bool,
 }
 
@@ -33,7 +33,7 @@ struct Written<'m> {
     model: Vec<Text<'m>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     motion: Option<PackedMotion<'m>>,
-    /// Why there is no motion.
+    /// Reason for the absence of a motion.
     #[serde(skip_serializing_if = "Option::is_none")]
     absent: Option<&'m str>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -46,7 +46,7 @@ struct Text<'m> {
     text: &'m str,
 }
 
-/// As [`Motion`]; arrays of numbers are packed, and those of samples are differences from the nominal ones.
+/// Like [`Motion`]; arrays of numbers are packed, and those of samples are differences from the nominal ones.
 #[derive(Serialize)]
 struct PackedMotion<'m> {
     drawing: &'m Drawing,
@@ -115,7 +115,7 @@ struct PackedEvents {
     deviations: String,
 }
 
-/// The file; with the results, their derivatives are in it too.
+/// The file; with the results, it contains their derivatives too.
 ///
 /// # Errors
 /// Only if memory cannot be written to.

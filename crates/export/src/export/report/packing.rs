@@ -11,7 +11,7 @@ pub(super) fn floats(values: &[f64]) -> String {
 /// Numbers as whole multiples, up to ±32767, of scales that repeat with a fixed period.
 #[derive(Serialize)]
 pub(super) struct Packed {
-    /// Of the places that repeat.
+    /// Scale of each index of the period.
     scales: Vec<f32>,
     /// 16-bit integers, little-endian.
     data: String,

@@ -1,4 +1,4 @@
-//! `report.html`: one page of a model's results, or of all its scenes', that asks nothing of anyone.
+//! `report.html`: one page of a model's results, or of all its scenes', that loads nothing from elsewhere.
 
 use data_encoding::BASE64;
 use serde_json::{Value, json};
@@ -9,16 +9,16 @@ use super::script::{REPORT_STYLE, SCRIPT};
 use super::statistics;
 use super::tables::{self, text};
 
-/// A scene of a page, or the model where it has none.
+/// A scene of a page, or the model if it has no scenes.
 #[derive(Debug)]
 pub(in crate::export) struct PageScene {
-    /// The scene's name; the model's own where it has none.
+    /// The scene's name; the model's own if it has no scenes.
     pub name: String,
     /// `summary.json`
     pub summary: Value,
-    /// `motion.json`; null where there is none.
+    /// `motion.json`; null if absent.
     pub motion: Value,
-    /// Of each output.
+    /// Figures of each output.
     pub figures: Vec<PageFigure>,
 }
 
@@ -27,7 +27,7 @@ pub(in crate::export) struct PageScene {
 pub(in crate::export) struct PageFigure {
     /// The output.
     pub output: String,
-    /// SVG documents: its bounds, and what parameters contribute where that is known.
+    /// SVG documents: its bounds, and the contributions of parameters if they are known.
     pub plots: Vec<String>,
 }
 
@@ -41,10 +41,10 @@ pub(in crate::export) fn page(model: &str, scenes: &[PageScene]) -> String {
     let title = escaped(model);
     let icon = "data:image/svg+xml,%3Csvg xmlns='http://www.w3.org/2000/svg'/%3E";
     let data = script_json(&Value::Array(data));
-    // Of all that stands in the page, so that nothing in it can know it.
+    // Hash of the whole contents of the page, so that nothing in it can know it.
     let nonce =
         BASE64.encode(&Sha256::new().chain_update(&contents).chain_update(&data).chain_update(&title).finalize());
-    // Nothing is fetched, and a browser that is asked to would not; no script runs but this page's own.
+    // Nothing is fetched, and a browser that is asked to would refuse; no script runs but this page's own.
     let policy = format!(
         "default-src 'none'; style-src 'unsafe-inline'; script-src 'nonce-{nonce}'; img-src data:; base-uri 'none'; \
          form-action 'none'"
@@ -67,7 +67,7 @@ pub(in crate::export) fn page(model: &str, scenes: &[PageScene]) -> String {
     )
 }
 
-/// What the scripts read: no picture, which the page has as elements.
+/// Data of the scripts: without the picture, which the page has as elements.
 fn data(scene: &PageScene) -> Value {
     let mut motion = scene.motion["motion"].clone();
     if let Some(motion) = motion.as_object_mut() {
@@ -91,7 +91,7 @@ pub(super) fn content(index: usize, scene: &PageScene, scenes: usize) -> String 
     let picture = text(&motion["motion"], "picture");
     let picture = match picture.is_empty() {
         true => String::new(),
-        // As a picture of its own: its style is not that of the page.
+        // As a separate picture: its style is not that of the page.
         false => {
             format!("<div class=\"still\"><img alt=\"The mechanism at its start\" src=\"{}\"></div>", image(picture))
         }
@@ -103,7 +103,7 @@ pub(super) fn content(index: usize, scene: &PageScene, scenes: usize) -> String 
             let prefix = |kind: usize| format!("s{index}p{number}k{kind}-");
             let svgs = figure.plots.iter().enumerate();
             let output = escaped(&figure.output);
-            // Figures of other programs are pictures, in which nothing acts.
+            // Figures of other programs are images, in which nothing acts.
             let plot = |(kind, svg): (usize, &String)| match is_figure(svg) {
                 true => inline_svg(svg, &prefix(kind)),
                 false => format!("<img alt=\"{output}\" src=\"{}\">", image(svg)),

@@ -1,12 +1,11 @@
-//! The scripts and the style of a report. The scripts are modules while they are written and checked, and one script in
-//! a page.
+//! The scripts and the style of a report. The scripts are modules for development and checks, and one script in a page.
 
 use std::sync::LazyLock;
 
 /// The style.
 pub const REPORT_STYLE: &str = include_str!("style.css");
 
-/// The modules with their names, each behind those that it imports.
+/// The modules with their names, each after those that it imports.
 const MODULES: [(&str, &str); 14] = [
     ("data.js", include_str!("data.js")),
     ("vectors.js", include_str!("vectors.js")),
@@ -29,10 +28,10 @@ pub fn report_module(name: &str) -> Option<&'static str> {
     MODULES.iter().find(|(known, _)| *known == name).map(|(_, text)| *text)
 }
 
-/// All modules as one script: including their imports from each other.
+/// All modules as one script, without their imports from each other.
 pub(super) static SCRIPT: LazyLock<String> = LazyLock::new(|| MODULES.map(|(_, text)| plain(text)).concat());
 
-/// A module without imports, and without the word `export`. Comments stay out of pages.
+/// A module without imports, comments, and the word `export`.
 fn plain(module: &str) -> String {
     let mut text = String::with_capacity(module.len());
     let mut in_comment = false;

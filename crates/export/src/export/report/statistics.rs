@@ -6,7 +6,7 @@ use serde_json::Value;
 use super::html::{escaped, number};
 use super::tables::{list, section, shown, table, text};
 
-/// The tolerance stack of each output at the time at which it varies most, and yields; nothing where the model asks for
+/// The tolerance stack of each output at the time at which it varies most, and yields; empty if the model asks for
 /// none.
 pub(super) fn statistics(summary: &Value) -> String {
     let found = &summary["statistics"];

@@ -5,12 +5,12 @@ use serde_json::Value;
 
 use super::html::{escaped, number};
 
-/// A text of an object; empty where it has none.
+/// A text of an object; empty if it has none.
 pub(super) fn text<'v>(object: &'v Value, key: &str) -> &'v str {
     object[key].as_str().unwrap_or("")
 }
 
-/// The objects of a list; none where there is no list.
+/// The objects of a list; empty if there is no list.
 pub(super) fn list<'v>(object: &'v Value, key: &str) -> &'v [Value] {
     object[key].as_array().map_or(&[], Vec::as_slice)
 }
@@ -44,17 +44,17 @@ pub(super) fn shown(object: &Value, value: &Value) -> String {
     }
 }
 
-/// A number with its unit, where it has one.
+/// A number with its unit, if it has one.
 fn with_unit(value: &Value, unit: &str) -> String {
     let number = number(value);
     if unit.is_empty() { number } else { format!("{number}&#8239;{}", escaped(&unit.replace('*', "·"))) }
 }
 
-/// Requirements with their verdicts; nothing where the model has none.
+/// Requirements with their verdicts; empty if the model has none.
 pub(super) fn requirements(summary: &Value) -> String {
     let rows = list(summary, "requirements").iter().map(|requirement| {
         let verdict = text(requirement, "verdict");
-        // A sign too: colours alone do not tell everybody.
+        // A sign too: not everybody distinguishes the colours.
         let sign = match verdict {
             "holds" => "✓",
             "violated" => "✗",
@@ -79,7 +79,7 @@ pub(super) fn requirements(summary: &Value) -> String {
     }
 }
 
-/// Numbers of whole motions; nothing where the model asks for none.
+/// Numbers of whole motions; empty if the model asks for none.
 pub(super) fn reduced(summary: &Value) -> String {
     let rows = list(summary, "reduced").iter().map(|reduced| {
         let bands = list(reduced, "bands").iter().map(|band| {
@@ -100,7 +100,7 @@ pub(super) fn reduced(summary: &Value) -> String {
     }
 }
 
-/// In how many samples an instant occurs, and in which share of the box; `None` where it occurs in all.
+/// The number of samples in which an instant occurs, and its share of the box; `None` if it occurs in all.
 fn occurrence(reduced: &Value) -> Option<String> {
     let occurs = reduced.get("occurs")?;
     let samples = format!("occurs in {} of {} samples", number(&occurs["samples"]), number(&occurs["of"]));
@@ -113,7 +113,7 @@ fn occurrence(reduced: &Value) -> Option<String> {
     })
 }
 
-/// Events that a part of the samples meets; nothing where there are none.
+/// Events that some of the samples meet; empty if there are none.
 pub(super) fn events(summary: &Value) -> String {
     let grazed = |pair: &Value| {
         let own = list(summary, "parameters").iter().find(|parameter| parameter["name"] == pair[0])?;
@@ -133,7 +133,7 @@ pub(super) fn events(summary: &Value) -> String {
     }
 }
 
-/// The uncertain parameters, and what each contributes to each output.
+/// The uncertain parameters, and their contributions to each output.
 pub(super) fn parameters(summary: &Value) -> String {
     let parameters = list(summary, "parameters");
     if parameters.is_empty() {
@@ -172,7 +172,7 @@ pub(super) fn bounds(summary: &Value) -> String {
     }
 }
 
-/// What a reader has to know before believing the rest.
+/// Warnings that a reader has to know before believing the rest.
 pub(super) fn warnings(summary: &Value, motion: &Value) -> Vec<String> {
     let mut warnings = Vec::new();
     if summary["interrupted"] == Value::Bool(true) {
@@ -222,7 +222,7 @@ pub(super) fn warnings(summary: &Value, motion: &Value) -> Vec<String> {
     warnings
 }
 
-/// Warnings as a section; nothing where there are none.
+/// Warnings as a section; empty if there are none.
 pub(super) fn warning_list(warnings: &[String]) -> String {
     let items: String = warnings.iter().map(|warning| format!("<li>{}</li>", escaped(warning))).collect();
     if items.is_empty() { String::new() } else { section("warnings", "Warnings", &format!("<ul>{items}</ul>")) }

@@ -19,18 +19,18 @@ pub(super) struct Visual {
     /// Euler parameters.
     orientation: [f64; 4],
     shape: &'static str,
-    /// Sides; radius and length along z, where a radius of 0 is that of a thin line; radius; factors; m.
+    /// Sides of a box; radius and length along z, a radius of 0 being a thin line; radius; factors of a mesh; m.
     size: Vec<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     color: Option<[f64; 3]>,
     /// Corners of triangles.
     #[serde(skip_serializing_if = "Option::is_none")]
     vertices: Option<String>,
-    /// Least and greatest corner of a box that holds it, in its frame, m.
+    /// Least and greatest corner of a box that encloses it, in its frame, m.
     within: [[f64; 3]; 2],
 }
 
-/// All that a solid is drawn by.
+/// The visuals that draw a solid.
 pub(super) fn visuals(solid: &DrawnSolid) -> Vec<Visual> {
     let frame = SolidFrame::in_body(solid);
     let visual = |frame: SolidFrame, shape: &'static str, size: Vec<f64>| Visual {
@@ -61,7 +61,7 @@ pub(super) fn visuals(solid: &DrawnSolid) -> Vec<Visual> {
     // Faces moved out by the radius, and capsules along their edges.
     let rounded = |faces: &[Face], radius: f64| -> Vec<Visual> {
         let edges = faces.iter().flat_map(|face| face.iter().zip(face.iter().cycle().skip(1)));
-        // Each edge is one of two faces, once in each direction.
+        // Each edge belongs to two faces, once in each direction.
         let edges = edges.filter(|(from, to)| from < to).map(|(from, to)| capsule(*from, *to, radius));
         std::iter::once(triangles(&moved_out(faces, radius))).chain(edges).collect()
     };
@@ -106,7 +106,7 @@ fn bounds(points: impl Iterator<Item = [f64; 3]>) -> [[f64; 3]; 2] {
     })
 }
 
-/// Of forms without triangles.
+/// Enclosing box of forms without triangles.
 fn extent(shape: &str, size: &[f64]) -> [[f64; 3]; 2] {
     let z = [0.0, 0.0, 1.0];
     let form = match (shape, size) {

@@ -3,22 +3,22 @@
 use super::read::{ColumnKind, Curve, Output, Snapshot};
 use crate::export::tuning::TUNING;
 
-/// A curve that moved by more than the errors stated then and now, where it did so most.
+/// A curve that moved by more than the errors stated then and now, at the time of its largest change.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Moved {
     /// E.g. `x3.chebyshev.upper`, or an output alone.
     pub what: String,
     /// SI unit, empty where dimensionless.
     pub unit: String,
-    /// When it moved most, s; empty where that is no matter of a time.
+    /// Time of its largest change, s; empty if the difference has no time.
     pub time: String,
     /// Recorded value.
     pub before: String,
     /// Present value.
     pub after: String,
-    /// How far it may move there: the sum of both stated errors and of what rounding hides.
+    /// Allowed change there: the sum of both stated errors and of the rounding.
     pub allowed: Option<f64>,
-    /// At how many of the times it moved, and of how many.
+    /// The number of times at which it moved, and of all times compared.
     pub times: Option<(usize, usize)>,
 }
 
@@ -32,8 +32,8 @@ impl Moved {
 
 /// Differences from the record, in the order of the model's outputs; last the missing ones.
 ///
-/// A bound may move by the sum of the errors that are stated of it, the nominal course by the smallest sum of those of
-/// a method. An error may double. Rounded values may differ in their last digit.
+/// A bound may move by the sum of its stated errors, the nominal course by the smallest such sum of a method. An error
+/// may double. Rounded values may differ in their last digit.
 pub fn moved(before: &Snapshot, after: &Snapshot) -> Vec<Moved> {
     let mut found = Vec::new();
     for now in &after.outputs {
@@ -80,7 +80,7 @@ fn of_output(then: &Output, now: &Output, found: &mut Vec<Moved>) {
     }
 }
 
-/// The first and the last time.
+/// The number of times, with the first and the last one.
 fn ends(times: &[String]) -> String {
     match times {
         [] => "none".to_owned(),
@@ -89,7 +89,7 @@ fn ends(times: &[String]) -> String {
     }
 }
 
-/// The time at which a curve moved most, relative to the allowance; `None` if it did not. The field `what` stays empty.
+/// The largest change of a curve, relative to the allowance; `None` if it did not move. The field `what` stays empty.
 fn of_curve(then: &Output, now: &Output, curve: &Curve, shared: &[(usize, usize)]) -> Option<Moved> {
     let earlier = curve_of(then, &curve.method, curve.kind)?;
     let mut worst: Option<(f64, Moved)> = None;
@@ -110,7 +110,7 @@ fn of_curve(then: &Output, now: &Output, curve: &Curve, shared: &[(usize, usize)
             _ => (value(after) - value(before)).abs(),
         };
         let is_same = before == after || value(before) == value(after);
-        // An unknown number is as far from a known one as can be.
+        // An unknown number is infinitely far from a known one.
         let excess = if distance.is_nan() || allowed.is_nan() { f64::INFINITY } else { distance / allowed };
         if is_same || excess <= 1.0 + 1e-9 {
             continue;
@@ -133,29 +133,29 @@ fn curve_of<'o>(output: &'o Output, method: &str, kind: ColumnKind) -> Option<&'
     output.curves.iter().find(|curve| curve.method == method && curve.kind == kind)
 }
 
-/// The stated error of a bound in a row; of the nominal course, which has none, the smallest of a method. Where it
-/// is not known, 0.
+/// The stated error of a bound in a row; for the nominal course, which has none, the smallest of a method. 0 if
+/// unknown.
 fn stated_error(output: &Output, curve: &Curve, row: usize) -> f64 {
     let errors = output.curves.iter().filter(|other| other.kind == ColumnKind::Error);
     let errors = errors.filter(|other| curve.kind == ColumnKind::Nominal || other.method == curve.method);
-    // Proven bounds have no error, which is nothing that the nominal course could keep.
+    // Proven bounds have error 0, which the simulated nominal course cannot meet.
     let known = errors.map(|error| value(&error.cells[row])).filter(|error| *error > 0.0 && error.is_finite());
     known.reduce(f64::min).unwrap_or(0.0)
 }
 
-/// The last digit that is shown of an output's bounds in a row.
+/// The last digit shown of an output's bounds in a row.
 fn finest(output: &Output, row: usize) -> f64 {
     let known =
         output.curves.iter().filter(|curve| curve.kind != ColumnKind::Error).map(|curve| rounding(&curve.cells[row]));
     2.0 * known.fold(0.0, f64::max)
 }
 
-/// A number that was checked when it was read.
+/// A number that was checked while reading.
 fn value(cell: &str) -> f64 {
     cell.parse().unwrap_or(f64::NAN)
 }
 
-/// Half of the last digit of a number with a decimal point, or none.
+/// Half of the last digit of a number with a decimal point, or 0.
 fn rounding(cell: &str) -> f64 {
     let decimals = cell.split_once('.').map_or(0, |(_, decimals)| decimals.len());
     0.5 * format!("1e-{decimals}").parse::<f64>().unwrap_or(0.0)

@@ -1,4 +1,4 @@
-//! Snapshots: bounds of a run as a small text that is kept beside the model, read back and compared with those of a
+//! Snapshots: bounds of a run as a small text that is stored next to the model, read back and compared with those of a
 //! later run.
 
 mod compare;

@@ -1,6 +1,6 @@
-//! Reads what [`snapshot_table`](super::snapshot_table) writes.
+//! Reads the output of [`snapshot_table`](super::snapshot_table).
 
-/// A snapshot as it was recorded: numbers with the digits that they were written with.
+/// A recorded snapshot: numbers with the digits in the file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Snapshot {
     pub(super) outputs: Vec<Output>,
@@ -10,10 +10,10 @@ pub struct Snapshot {
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Output {
     pub name: String,
-    /// Empty where dimensionless.
+    /// SI unit; empty if dimensionless.
     pub unit: String,
     pub curves: Vec<Curve>,
-    /// As they are written, s.
+    /// Times with the digits in the file, s.
     pub times: Vec<String>,
 }
 
@@ -23,11 +23,11 @@ pub(super) struct Curve {
     /// Empty for the nominal course.
     pub method: String,
     pub kind: ColumnKind,
-    /// At each time.
+    /// Value at each time.
     pub cells: Vec<String>,
 }
 
-/// What a column of a snapshot has.
+/// Kind of a column of a snapshot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum ColumnKind {
     Nominal,
@@ -37,7 +37,7 @@ pub(super) enum ColumnKind {
 }
 
 impl ColumnKind {
-    /// By the end of a heading.
+    /// The kind named by the end of a heading.
     pub fn of(name: &str) -> Option<Self> {
         [Self::Lower, Self::Upper, Self::Error].into_iter().find(|kind| kind.name() == name)
     }
@@ -52,7 +52,7 @@ impl ColumnKind {
     }
 }
 
-/// A file that is no snapshot: the line, from 1, and its error.
+/// A file that is not a snapshot: the line, from 1, and its error.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("line {line}: {message}")]
 pub struct SnapshotError {
@@ -61,10 +61,10 @@ pub struct SnapshotError {
 }
 
 impl Snapshot {
-    /// Of a text with or without the lines between hyphens at its head.
+    /// Parses a text with or without the lines between hyphens at its head.
     ///
     /// # Errors
-    /// At the first line that is no part of a table.
+    /// At the first line that is not part of a table.
     pub fn read(text: &str) -> Result<Self, SnapshotError> {
         let mut lines = text.lines().enumerate().peekable();
         if lines.next_if(|(_, line)| *line == "---").is_some() {
@@ -120,7 +120,7 @@ impl Output {
     }
 }
 
-/// The columns of a line of headings; `None` if it is none.
+/// The columns of a line of headings; `None` for any other line.
 fn curves(headings: &str) -> Option<Vec<Curve>> {
     let mut headings = headings.split_whitespace();
     if (headings.next(), headings.next()) != (Some("t"), Some("nominal")) {
@@ -135,7 +135,7 @@ fn curves(headings: &str) -> Option<Vec<Curve>> {
     Some(curves)
 }
 
-/// At a line that is counted from 0.
+/// The error at a line that is counted from 0.
 fn error(line: usize, message: &str) -> SnapshotError {
     SnapshotError { line: line + 1, message: message.to_owned() }
 }

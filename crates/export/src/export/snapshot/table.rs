@@ -7,10 +7,10 @@ use crate::export::folder::write_pages;
 use crate::export::tuning::TUNING;
 use crate::results::{Bounds, OutputBounds};
 
-/// A snapshot's table: of each output its name with the unit, headings, and ten rows in even distances to the end of
+/// A snapshot's table: for each output its name with the unit, headings, and ten rows at equal distances to the end of
 /// the run.
 ///
-/// Columns: `t`, `nominal`, and of each method `METHOD.lower`, `.upper` and `.error`. Bounds have five digits of the
+/// Columns: `t`, `nominal`, and for each method `METHOD.lower`, `.upper` and `.error`. Bounds have five digits of the
 /// output's span, errors two digits.
 pub fn snapshot_table(bounds: &Bounds) -> String {
     let rows = rows(bounds.times.len());
@@ -57,7 +57,7 @@ pub fn write_snapshot(folder: &Path, name: &str, file: &str) -> Result<Vec<PathB
     write_pages(folder, &[(name.to_owned(), file.to_owned())])
 }
 
-/// The rows that are shown.
+/// Indices of the rows that are shown.
 fn rows(count: usize) -> Vec<usize> {
     let Some(last) = count.checked_sub(1) else { return Vec::new() };
     let mut rows: Vec<usize> =
@@ -66,13 +66,13 @@ fn rows(count: usize) -> Vec<usize> {
     rows
 }
 
-/// Decimals that tell the times shown from each other.
+/// Decimals that distinguish the times shown.
 fn times(times: &[f64]) -> usize {
     let duration = times.last().copied().unwrap_or(1.0);
     if duration > 0.0 { (2 - exponent(duration)).max(4) as usize } else { 4 }
 }
 
-/// Decimals that show `TUNING.digits_of_span` digits of everything the output does.
+/// Decimals that show `TUNING.digits_of_span` digits of the output's whole range.
 fn decimals(output: &OutputBounds) -> usize {
     let bands = output.bands.iter().flat_map(|band| band.lower.iter().chain(&band.upper));
     let values = output.nominal.iter().chain(bands).filter(|value| value.is_finite());

@@ -1,4 +1,4 @@
-//! Forms as flat faces, whose corners turn left seen from outside.
+//! Forms as flat faces, whose corners turn left when seen from outside.
 
 use nalgebra::Vector3;
 use symdiff::math;
@@ -12,7 +12,7 @@ use crate::export::tuning::TUNING;
 /// A flat polygon.
 pub(in crate::export) type Face = Vec<[f64; 3]>;
 
-/// The faces of a form, without the points within a radius of it.
+/// The faces of a form, without its rounding radius.
 pub(in crate::export) fn faces(form: &Form<f64>) -> Vec<Face> {
     match form {
         Form::Box { size, .. } => of_box(*size),
@@ -66,7 +66,7 @@ fn ring(radius: f64) -> Face {
     (0..TUNING.pieces_of_turn).map(at).collect()
 }
 
-/// A plate about z = 0; one of no thickness has two sides.
+/// A plate about z = 0; one without thickness has two sides.
 fn prism(outline: &[[f64; 3]], thickness: f64) -> Vec<Face> {
     let mut outline = outline.to_vec();
     if normal(&outline).z < 0.0 {
@@ -105,7 +105,7 @@ fn wall(radius: f64) -> Vec<Face> {
     pieces.collect()
 }
 
-/// Faces about z, turned to an axis.
+/// Faces about z, rotated to an axis.
 fn turned(faces: Vec<Face>, axis: [f64; 3]) -> Vec<Face> {
     let frame = SolidFrame::still().along([0.0; 3], axis);
     faces.into_iter().map(|face| face.into_iter().map(|corner| frame.place(corner)).collect()).collect()
@@ -115,7 +115,7 @@ fn turned(faces: Vec<Face>, axis: [f64; 3]) -> Vec<Face> {
 mod tests {
     use super::*;
 
-    /// By the divergence theorem; right only where all faces look outside.
+    /// Volume by the divergence theorem; correct only if all faces point outwards.
     fn volume(faces: &[Face]) -> f64 {
         faces.iter().map(|face| Vector3::from(face[0]).dot(&normal(face)) / 6.0).sum()
     }

@@ -6,7 +6,7 @@ use symdiff::math;
 use crate::elements::Bend;
 use crate::export::tuning::TUNING;
 
-/// The points of a line with arcs as short straight pieces, closed by itself where it is so.
+/// The points of a line with arcs as short straight pieces; in a closed line, the last point precedes the first.
 pub(in crate::export) fn polyline(bends: &[Bend<f64>], is_closed: bool) -> Vec<[f64; 3]> {
     let mut points = Vec::new();
     for (index, bend) in bends.iter().enumerate() {
@@ -24,7 +24,7 @@ fn arc(from: [f64; 3], to: [f64; 3], radius: f64) -> Vec<[f64; 3]> {
     let (x, y) = (to[0] - from[0], to[1] - from[1]);
     let chord = math::hypot(x, y);
     let height = (radius * radius - 0.25 * chord * chord).max(0.0).sqrt() * radius.signum();
-    // The centre is on the left of the way where the arc turns left.
+    // The centre is on the left of the chord if the arc turns left.
     let centre = [0.5 * (from[0] + to[0]) - height * y / chord, 0.5 * (from[1] + to[1]) + height * x / chord];
     let turn = 2.0 * math::atan2(0.5 * chord, height.abs()) * radius.signum();
     let pieces = ((turn.abs() / std::f64::consts::TAU * TUNING.pieces_of_turn as f64 - 1e-9).ceil() as usize).max(1);
@@ -53,7 +53,7 @@ pub(in crate::export) fn triangulated(corners: &[[f64; 3]]) -> Vec<[[f64; 3]; 3]
             };
             side(a, b, c) > 0.0 && !left.iter().any(within)
         };
-        // A line that crosses itself has none; any corner will do then.
+        // A line that crosses itself has no ear; any corner will do then.
         let index = (0..count).find(is_ear).unwrap_or(0);
         found.push(ear(index).map(Into::into));
         left.remove(index);

@@ -1,11 +1,11 @@
-//! The frame of a solid in its body's, and in the ground's.
+//! The frame of a solid relative to its body's, and to the ground's.
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use symdiff::math;
 
 use crate::results::{DrawnBody, DrawnSolid};
 
-/// A frame in another.
+/// A frame relative to another.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::export) struct SolidFrame {
     position: Vector3<f64>,
@@ -17,17 +17,17 @@ fn unit([w, x, y, z]: [f64; 4]) -> UnitQuaternion<f64> {
 }
 
 impl SolidFrame {
-    /// Of a frame in itself.
+    /// The identity.
     pub fn still() -> Self {
         Self { position: Vector3::zeros(), rotation: UnitQuaternion::identity() }
     }
 
-    /// Of a solid in its body's frame.
+    /// The frame of a solid relative to its body's.
     pub fn in_body(solid: &DrawnSolid) -> Self {
         Self { position: solid.position.into(), rotation: unit(solid.orientation) }
     }
 
-    /// Of a solid in the ground's frame.
+    /// The frame of a solid relative to the ground's.
     pub fn in_ground(solid: &DrawnSolid, body: &DrawnBody) -> Self {
         let rotation = match (body.orientation, body.angle) {
             (Some(parameters), _) => unit(parameters),
@@ -43,7 +43,7 @@ impl SolidFrame {
     pub fn along(&self, at: [f64; 3], axis: [f64; 3]) -> Self {
         let axis = Vector3::from(axis).try_normalize(0.0).unwrap_or_else(Vector3::z);
         let across = Vector3::z().cross(&axis);
-        // Half the angle between both; opposite directions have no one rotation between them.
+        // Half the angle between both; the rotation between opposite directions is not unique.
         let turn = if axis.z > -1.0 + 1e-12 {
             unit([1.0 + axis.z, across.x, across.y, across.z])
         } else {
@@ -52,17 +52,17 @@ impl SolidFrame {
         Self { position: self.place(at).into(), rotation: self.rotation * turn }
     }
 
-    /// A point of the frame in the other.
+    /// A point of the frame, in the other.
     pub fn place(&self, point: [f64; 3]) -> [f64; 3] {
         (self.position + self.rotation * Vector3::from(point)).into()
     }
 
-    /// A direction of the frame in the other.
+    /// A direction of the frame, in the other.
     pub fn direction(&self, direction: [f64; 3]) -> [f64; 3] {
         (self.rotation * Vector3::from(direction)).into()
     }
 
-    /// The origin in the other.
+    /// The origin, in the other.
     pub fn position(&self) -> [f64; 3] {
         self.position.into()
     }

@@ -1,4 +1,4 @@
-//! Forms as pictures draw them: by flat faces, or by points within a radius of which they are.
+//! Forms for pictures: flat faces, or points with a radius around their hull.
 
 mod faces;
 mod flat;
@@ -22,7 +22,7 @@ pub(super) fn core(form: &Form<f64>) -> Option<(Vec<[f64; 3]>, f64)> {
     }
 }
 
-/// Points that hold a form between them, in its frame.
+/// Points whose convex hull contains a form, in its frame.
 pub(super) fn reach(form: &Form<f64>) -> Vec<[f64; 3]> {
     let around = |point: [f64; 3], radius: f64| {
         (0..3).flat_map(move |axis| {

@@ -10,7 +10,7 @@ use crate::export::rounded::shown;
 use crate::grammar::display_unit::ShownUnit;
 use crate::results::{ChainSummary, LinkSummary};
 
-/// Width on the page, px, and height of an arrow's line and of the rest.
+/// Width on the page, px, and heights of an arrow's line and of the rest.
 const WIDTH: f64 = 760.0;
 const ROW: f64 = 26.0;
 const TOP: f64 = 44.0;
@@ -22,7 +22,7 @@ const HEAD: (f64, f64) = (9.0, 4.0);
 /// The closing dimension's colour.
 const CLOSING: usize = 3;
 
-/// The drawing; lengths are shown in a unit.
+/// The drawing; lengths are shown in `unit`.
 pub(super) fn chain_svg(model: &str, chain: &ChainSummary, unit: ShownUnit) -> String {
     let ends = ends(&chain.links);
     let scale = Axis::fit(ends.iter().copied().chain([0.0, chain.nominal]), unit, 5, 0.02, 0.0);
@@ -63,7 +63,7 @@ pub(super) fn chain_svg(model: &str, chain: &ChainSummary, unit: ShownUnit) -> S
     finished(&figure)
 }
 
-/// Where the links begin, and where the last one ends: each is added with its sign.
+/// The starts of the links, and the end of the last one: each is added with its sign.
 fn ends(links: &[LinkSummary]) -> Vec<f64> {
     let mut ends = vec![0.0];
     for link in links {
@@ -104,7 +104,7 @@ mod tests {
         assert!(ends.iter().zip(wanted).all(|(end, wanted)| (end - wanted).abs() < 1e-15), "{ends:?}");
     }
 
-    /// Lengths on the page are to each other as the dimensions are.
+    /// Lengths on the page are proportional to the dimensions.
     #[test]
     fn arrows_are_to_scale() {
         let svg = chain_svg("m", &chain(), ShownUnit { text: "mm", si: 1e-3 });

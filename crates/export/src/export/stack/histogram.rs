@@ -11,7 +11,7 @@ use crate::export::rounded::shown;
 use crate::grammar::display_unit::ShownUnit;
 use crate::results::{Histogram, LimitLine, OutputStatisticsSummary, Summary};
 
-/// Size on the page, px, and what stays free on each side.
+/// Size on the page, px, and free space on each side.
 const SIZE: (f64, f64) = (760.0, 340.0);
 const LEFT: f64 = 74.0;
 const RIGHT: f64 = 20.0;
@@ -58,7 +58,7 @@ pub(super) fn histogram_svg(summary: &Summary, output: &OutputStatisticsSummary,
     finished(&figure)
 }
 
-/// Worst case, and the capability of the requirement that limits the output, where there is one.
+/// Worst case, and the capability of the requirement that limits the output, if there is one.
 fn in_words(summary: &Summary, output: &OutputStatisticsSummary) -> String {
     let unit = ShownUnit::of(&output.display, &output.unit);
     let [lower, upper] = output.worst_case.map(|end| shown(unit, end));

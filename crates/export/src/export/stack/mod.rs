@@ -8,10 +8,10 @@ use super::tornado::{Bar, derivative_in, tornado};
 use crate::grammar::display_unit::ShownUnit;
 use crate::results::{OutputStatisticsSummary, ParameterSummary, Sensitivity, Summary};
 
-/// What follows the output's name in the names of the files, in the order of a page.
+/// Suffixes of the output's name in the names of the files, in the order of a page.
 pub(super) const FIGURES: [&str; 3] = ["chain.svg", "tornado.svg", "histogram.svg"];
 
-/// The figures of an output, each with the last part of its file's name; none where it is no stack.
+/// The figures of an output, each with the last part of its file's name; empty if it is not a stack.
 pub(super) fn figures(summary: &Summary, output: &str) -> Vec<(&'static str, String)> {
     let [of_chain, of_tornado, of_histogram] = FIGURES;
     let statistics = summary.statistics.as_ref();
