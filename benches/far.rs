@@ -1,6 +1,5 @@
-//! What conditional effects cost: a scan of 1024 samples in lockstep, without them, with them far from touching,
-//! and where some samples touch some of the time. Medians of the ratios to the bare model, with
-//! the quartiles.
+//! Cost of conditional effects: a scan of 1024 samples in lockstep, without them, with them far from touching, and with
+//! some samples touching some of the time. Medians of the ratios to the bare model, with the quartiles.
 
 #![allow(clippy::disallowed_methods, reason = "tests compare with the standard library's functions")]
 
@@ -11,7 +10,7 @@ use mbint::inner::study::{Options, prepare, run};
 use mbint::results::Method;
 use paired::{Paired, paired};
 
-/// Pairs of runs of each.
+/// Pairs of runs of each comparison.
 const PAIRS: usize = 101;
 
 /// The paper's slider crank with more in `ground` and `effects`.
@@ -61,7 +60,7 @@ fn stops(count: usize) -> Description {
     slider_crank(&format!("{count} stops"), "", &(0..count).map(stop).collect::<String>())
 }
 
-/// A buffer that the slider runs into in a part of each turn.
+/// A buffer that the slider hits in a part of each turn.
 fn buffer(at: &str) -> Description {
     let effect = "  buffer: { contact: { between: [ground.W, slider], plane: [-1, 0], impact: { stiffness: 1e4, exponent: 1, dissipation: 0.1 } } }\n";
     slider_crank(&format!("buffer at {at}"), &format!("W: [{at}, 0]"), effect)

@@ -1,5 +1,5 @@
-//! Gradients of 64 samples by all parameters, in the last row, beside as many simulations: the ratio of both is the
-//! cost of a gradient in simulations.
+//! Gradients of 64 samples by all parameters, in the last row, compared with as many simulations: the ratio of both is
+//! the cost of a gradient in simulations.
 
 #![allow(clippy::disallowed_methods, reason = "tests compare with the standard library's functions")]
 

@@ -10,10 +10,10 @@ use mbint::inner::model::load;
 use mbint::inner::study::prepare;
 use symdiff::{Binary, Op, Tape, Unary};
 
-/// A name, and which operations it has.
+/// A name, and a test for its operations.
 type OfKind = (&'static str, fn(Op) -> bool);
 
-/// Kinds of operations, and which instructions they are.
+/// Kinds of operations, and tests for their instructions.
 const KINDS: [OfKind; 7] = [
     ("+ −", |op| matches!(op, Op::Binary(Binary::Add | Binary::Sub))),
     ("·", |op| matches!(op, Op::Binary(Binary::Mul))),

@@ -1,4 +1,4 @@
-//! Time of a step of every shipped model, one sample on one thread, beside that of a reference loop: a line of JSON
+//! Time of a step of every shipped model, one sample on one thread, next to that of a reference loop: a line of JSON
 //! each, which `cargo xtask bench` reads.
 
 use std::hint::black_box;
@@ -12,10 +12,10 @@ use mbint::inner::study::prepare;
 /// Repetitions, of which the fastest counts.
 const REPETITIONS: usize = 25;
 
-/// Steps of a repetition, as far as the model's run has them.
+/// Steps of a repetition, if the model's run has that many.
 const STEPS: usize = 2000;
 
-/// Step of models that have a tolerance instead, s.
+/// Step of models with a tolerance instead, s.
 const STEP: f64 = 1e-3;
 
 fn main() {
@@ -40,8 +40,8 @@ fn main() {
     println!("{}", serde_json::json!({ "case": "reference loop", "nanoseconds": fastest }));
 }
 
-/// ns of a product and a sum, each of which waits for the one before: a measure of the processor's clock that no
-/// compiler and no width of registers changes.
+/// Time of a dependent product and sum, ns: a measure of the processor's clock that no compiler and no width of
+/// registers changes.
 fn reference() -> f64 {
     const COUNT: u32 = 2_000_000;
     let (mut x, a, b) = black_box((0.5_f64, 0.999_f64, 1e-3_f64));
@@ -53,7 +53,7 @@ fn reference() -> f64 {
     begun.elapsed().as_secs_f64() * 1e9 / f64::from(COUNT)
 }
 
-/// ns of a step of HHT-I3 with its iteration; `None` where the model takes no steps.
+/// Time of a step of HHT-I3 with its iteration, ns; `None` if the model takes no steps.
 fn step(description: &Description) -> Option<f64> {
     let simulator = prepare(description).ok()?;
     let simulation = &description.simulation;

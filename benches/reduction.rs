@@ -1,5 +1,5 @@
-//! Parts that no output needs cost nothing: a model with ten more bodies and a scene that leaves effects out against
-//! the bare one, and islands apart against the same in one.
+//! Parts that no output needs cost nothing: a model with ten more bodies and a scene that omits effects against the
+//! bare one, and separate islands against the same in one.
 //!
 //! The median of the pairs' ratios is printed, with the quartiles.
 
@@ -12,7 +12,7 @@ use std::fmt::Write as _;
 use mbint::Model;
 use paired::{Paired, paired};
 
-/// Pairs of runs where the times should be equal, and where they should not.
+/// Pairs of runs for equal times, and for unequal times.
 const EQUAL: usize = 401;
 const UNEQUAL: usize = 21;
 
@@ -65,7 +65,7 @@ fn shorter(text: &str) -> String {
     shorter
 }
 
-/// The slider crank with effects of many kinds, in a scene that leaves them out.
+/// The slider crank with effects of many kinds, in a scene that omits them.
 fn scene_without() -> Model {
     let effects = "
   weight: { gravity: { acceleration: [0, -9.81] } }
@@ -84,7 +84,7 @@ fn scene_without() -> Model {
     read("slider_crank.yaml", &text).scene("bare").unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Pendulums that have nothing to do with one another, the length of each uncertain.
+/// Unconnected pendulums, the length of each uncertain.
 fn pendulums(count: usize, mixed: &str) -> Model {
     let mut text = "model: pendulums\nparameters:\n".to_owned();
     let mut add = |heading: &str, line: &dyn Fn(usize) -> String, last: &str| {

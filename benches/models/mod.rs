@@ -1,4 +1,4 @@
-//! The mechanisms that are measured.
+//! The mechanisms of the measurements.
 
 #![allow(dead_code)] // no bench uses all of it
 
@@ -56,7 +56,7 @@ pub fn four_bar_yaml(loops: usize) -> String {
     )
 }
 
-/// Compiled and assembled.
+/// A compiled and assembled model.
 pub fn prepare(model: &Model) -> Simulator {
     study::prepare(model.study().description()).unwrap_or_else(|error| panic!("{}: {error}", model.name()))
 }

@@ -1,5 +1,5 @@
-//! Two runs compared on a machine that does other things too: in turn, each first as often as the other. A model
-//! against itself shows what the clock knows.
+//! Two runs compared on a machine that does other things too: alternately, each first equally often. A model against
+//! itself shows the resolution of the clock.
 
 use std::time::Instant;
 

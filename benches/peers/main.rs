@@ -1,5 +1,5 @@
-//! Times and errors of mbint and of the plain scalar implementation, for `benches/peers/run`, as JSON. With a number N:
-//! the model file of the N-four-bar.
+//! Times and errors of mbint and of the plain scalar implementation, for `benches/peers/run`, as JSON. With an argument
+//! N: the model file of the N-four-bar.
 
 #![allow(clippy::disallowed_methods, reason = "tests compare with the standard library's functions")]
 
@@ -39,7 +39,7 @@ fn main() {
     println!("{report}");
 }
 
-/// Smallest time of several runs, s, and what the last gave.
+/// Smallest time of several runs, s, and the result of the last one.
 fn best<T>(repetitions: usize, mut run: impl FnMut() -> T) -> (f64, T) {
     let mut timed = || {
         let begun = Instant::now();
@@ -54,7 +54,7 @@ fn best<T>(repetitions: usize, mut run: impl FnMut() -> T) -> (f64, T) {
     best
 }
 
-/// Samples over the parameters' intervals; the nominal one where it is one.
+/// Samples over the parameters' intervals; the nominal one for a count of one.
 fn samples(simulator: &Simulator, count: usize) -> Vec<Sample> {
     let parameters = &simulator.system.parameters;
     if count == 1 {
@@ -80,7 +80,7 @@ fn run(simulator: &Simulator, count: usize, schedule: &Schedule) -> Vec<f64> {
 fn slider_crank() -> Value {
     let description = models::slider_crank();
     let (preparation, simulator) = best(5, || models::prepare(&description));
-    // A row every 0.25 s, as the reference has.
+    // A row every 0.25 s, as in the reference.
     let schedule = Schedule::fixed(2.0, STEP, 0.25);
     let (single, values) = best(20, || run(&simulator, 1, &schedule));
     let (batch, _) = best(10, || run(&simulator, BATCH, &schedule));
@@ -117,7 +117,7 @@ fn taylor() -> Value {
     json!(seconds)
 }
 
-/// The scalar implementation takes `scalar_steps` steps; its time is that of the whole duration.
+/// The scalar implementation takes `scalar_steps` steps; its time is scaled to the whole duration.
 fn four_bar(loops: usize, duration: f64, scalar_steps: usize) -> Value {
     let simulator = models::prepare(&models::four_bar(loops));
     let schedule = Schedule::fixed(duration, STEP, duration);

@@ -1,4 +1,4 @@
-//! The same scheme as anyone would write it: one sample, residual and Newton matrix by hand, full Newton with
+//! The same scheme in a plain implementation: one sample, residual and Newton matrix by hand, full Newton with
 //! nalgebra's LU.
 //!
 //! M w₊ + Φ_qᵀ λ₊ − Q = 0,  Φ / (βh²(1+α)) = 0,  as in `crates/engine/src/compile/newton_matrix.rs`.
@@ -7,7 +7,8 @@ use nalgebra::{DMatrix, DVector, Dyn, OMatrix, SMatrix};
 
 const ALPHA: f64 = -0.1;
 
-/// Last correction of positions at which Newton's iteration ends: it converges quadratically, so that nothing is left.
+/// Last correction of positions at which Newton's iteration ends: it converges quadratically, so that the rest is
+/// negligible.
 const TOLERANCE: f64 = 1e-8;
 
 const MAX_CORRECTIONS: usize = 20;
@@ -24,7 +25,7 @@ pub trait Mechanism {
     fn force(&self, q: &DVector<f64>, v: &DVector<f64>, into: &mut [f64]);
     /// b ∂Q/∂q + c ∂Q/∂v, taken off the matrix.
     fn force_slopes(&self, b: f64, c: f64, matrix: &mut DMatrix<f64>);
-    /// The matrix's solution; `None` where it is singular.
+    /// The matrix's solution; `None` if it is singular.
     fn solve(&self, matrix: &DMatrix<f64>, right: &DVector<f64>) -> Option<DVector<f64>> {
         matrix.clone().lu().solve(right)
     }
@@ -40,7 +41,7 @@ pub struct State {
 }
 
 impl State {
-    /// Accelerations and multipliers that fit positions and velocities, by a step of length zero; `curvature` is
+    /// Accelerations and multipliers consistent with positions and velocities, by a step of length zero; `curvature` is
     /// −d(Φ_q)/dt v.
     pub fn new(mechanism: &impl Mechanism, q: DVector<f64>, v: DVector<f64>, curvature: &[f64]) -> Self {
         let (n, m) = (q.len(), mechanism.constraints());
@@ -210,7 +211,7 @@ const DAMPING: f64 = 1.0;
 const TORQUE: f64 = -0.5;
 
 impl SliderCrank {
-    /// Straight and at rest.
+    /// The straight position, at rest.
     pub fn start() -> (Self, State) {
         let (m1, m2, m3) = (0.37, 0.77, 0.45);
         let crank = Self { mass: [m1, m1, m1 * L1 * L1 / 12.0, m2, m2, m2 * L2 * L2 / 12.0, m3] };
@@ -279,7 +280,7 @@ impl Mechanism for SliderCrank {
         matrix[(6, 6)] += b * STIFFNESS + c * DAMPING;
     }
 
-    /// Sizes that are known when compiling are a little faster.
+    /// Sizes known at compile time are a little faster.
     fn solve(&self, matrix: &DMatrix<f64>, right: &DVector<f64>) -> Option<DVector<f64>> {
         let matrix = SMatrix::<f64, 13, 13>::from_column_slice(matrix.as_slice());
         let solution = matrix.lu().solve(&SMatrix::<f64, 13, 1>::from_column_slice(right.as_slice()))?;

@@ -1,7 +1,7 @@
 //! Units of FMI 2.0 and 3.0 (FMUs): the file and its description (`unit`), its library (`native`), and answers to
 //! points, by co-simulation or by integrating its equations (`run`).
 //!
-//! A unit is native code that may do anything, and may end its process. So the room `run` is for a process of its own,
+//! A unit is native code that may do anything, and may end its process. So the room `run` is for a separate process,
 //! which answers in the JSON lines of a black box. Standard: <https://fmi-standard.org>, 2.0.5 and 3.0.2.
 
 #![deny(unsafe_code)]

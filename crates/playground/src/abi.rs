@@ -1,5 +1,4 @@
-//! The functions by which a page's worker and the engine speak to each other, all over linear memory: the only unsafe
-//! code of this crate.
+//! The functions between a page's worker and the engine, all over linear memory: the only unsafe code of this crate.
 //!
 //! The worker allocates a question, asks it, reads the answer and releases it: four bytes of its length, least first,
 //! then its text. An instance that has stopped (a panic, no more memory) is not asked again.
@@ -24,31 +23,32 @@ unsafe extern "C" {
     safe fn exhausted(bytes: usize);
 }
 
-/// The allocator of the standard library, which says where memory is exhausted: the trap that follows says nothing.
+/// The allocator of the standard library, which reports that memory is exhausted: the trap that follows reports
+/// nothing.
 struct Reporting;
 
 #[global_allocator]
 static ALLOCATOR: Reporting = Reporting;
 
-// SAFETY: all is left to the system's allocator.
+// SAFETY: every call is passed to the system's allocator.
 unsafe impl GlobalAlloc for Reporting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        // SAFETY: the caller's.
+        // SAFETY: by the caller's contract.
         reported(unsafe { System.alloc(layout) }, layout.size())
     }
 
     unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
-        // SAFETY: the caller's.
+        // SAFETY: by the caller's contract.
         reported(unsafe { System.alloc_zeroed(layout) }, layout.size())
     }
 
     unsafe fn dealloc(&self, block: *mut u8, layout: Layout) {
-        // SAFETY: the caller's.
+        // SAFETY: by the caller's contract.
         unsafe { System.dealloc(block, layout) }
     }
 
     unsafe fn realloc(&self, block: *mut u8, layout: Layout, size: usize) -> *mut u8 {
-        // SAFETY: the caller's.
+        // SAFETY: by the caller's contract.
         reported(unsafe { System.realloc(block, layout, size) }, size)
     }
 }
@@ -60,7 +60,7 @@ fn reported(block: *mut u8, bytes: usize) -> *mut u8 {
     block
 }
 
-/// The page, as the engine sees it.
+/// The page, as host of the engine.
 struct Page;
 
 impl Host for Page {
@@ -75,10 +75,10 @@ pub extern "C" fn allocate(length: usize) -> *mut u8 {
     Box::leak(vec![0; length].into_boxed_slice()).as_mut_ptr()
 }
 
-/// Answers a question, whose room it takes; the answer is to be released.
+/// Answers a question, whose memory it takes; the answer has to be released.
 ///
 /// # Safety
-/// `question` and `length` are those of [`allocate`], once.
+/// `question` and `length` are from one call of [`allocate`], and are passed once.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ask(question: *mut u8, length: usize) -> *mut u8 {
     static BEGUN: Once = Once::new();
@@ -101,7 +101,7 @@ pub unsafe extern "C" fn ask(question: *mut u8, length: usize) -> *mut u8 {
 /// Releases an answer.
 ///
 /// # Safety
-/// `answer` is one of [`ask`], once.
+/// `answer` is from one call of [`ask`], and is passed once.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn release(answer: *mut u8) {
     // SAFETY: by the contract, the block begins with the length of the rest.

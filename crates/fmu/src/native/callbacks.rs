@@ -7,7 +7,7 @@ use std::ffi::{CStr, c_char, c_int, c_void};
 /// Callbacks of FMI 2.0.
 #[repr(C)]
 pub struct Callbacks {
-    /// Declared variadic in C. Further arguments are where no named one is sought, in every C calling convention.
+    /// Declared variadic in C. In every C calling convention, further arguments do not move the named ones.
     pub log: extern "C" fn(*mut c_void, *const c_char, c_int, *const c_char, *const c_char),
     pub allocate: unsafe extern "C" fn(usize, usize) -> *mut c_void,
     pub free: unsafe extern "C" fn(*mut c_void),
@@ -21,14 +21,14 @@ unsafe extern "C" {
 }
 
 impl Callbacks {
-    /// Of this process.
+    /// The callbacks of this process.
     pub fn new() -> Self {
         Self { log: log_two, allocate: calloc, free, finished: None, environment: std::ptr::null_mut() }
     }
 }
 
 extern "C" fn log_two(_: *mut c_void, _: *const c_char, status: c_int, _: *const c_char, message: *const c_char) {
-    // The marks of its further arguments stay in the text.
+    // Format marks of further arguments stay in the text.
     note(status, message);
 }
 
@@ -41,7 +41,7 @@ fn note(status: c_int, message: *const c_char) {
     if status == 0 || message.is_null() {
         return;
     }
-    // SAFETY: the standard says that it is a text that ends with zero.
+    // SAFETY: by the standard, it is a text that ends with zero.
     let message = unsafe { CStr::from_ptr(message) };
     eprintln!("{}", message.to_string_lossy().trim_end());
 }

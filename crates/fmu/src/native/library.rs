@@ -9,7 +9,7 @@ use crate::unit::Version;
 /// The library for this platform in an unpacked unit.
 ///
 /// # Errors
-/// Where there is none: the message has the platforms that there are.
+/// If there is none: the message lists the platforms that exist.
 pub fn find(folder: &Path, name: &str, version: Version) -> Result<PathBuf, Fault> {
     let binaries = folder.join("binaries");
     let system = if OS == "macos" { "darwin" } else { OS };

@@ -9,7 +9,7 @@ use std::path::Path;
 
 use crate::unit::{Interface, NumberType, Unit, Version};
 
-/// Why an instance does not go on.
+/// Reasons why an instance stops.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Fault {
     /// Its library cannot be used.
@@ -42,14 +42,14 @@ pub enum Fault {
     },
 }
 
-/// What an instance says of its discrete states.
+/// Report of an instance on its discrete states.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Discrete {
-    /// Whether they are to be asked again: in a new event after a step.
+    /// Whether to ask for them again: in a new event after a step.
     pub again: bool,
     /// Whether it ends its motion.
     pub terminates: bool,
-    /// Time of the next event that is known before, s.
+    /// Time of the next event, if known in advance, s.
     pub next: Option<f64>,
 }
 
@@ -61,13 +61,13 @@ pub trait Instance {
     fn get(&mut self, kind: NumberType, reference: u32) -> Result<f64, Fault>;
     /// Finds the start of a motion from 0 to `end`, s.
     fn initialise(&mut self, end: f64) -> Result<(), Fault>;
-    /// Moves on by a step, s, in co-simulation; whether the unit ends its motion with that step.
+    /// Takes a step, s, in co-simulation; returns whether the unit ends its motion with that step.
     fn step(&mut self, time: f64, size: f64) -> Result<bool, Fault>;
-    /// Enters the mode in which events happen; it begins there.
+    /// Enters the mode of events; it begins there.
     fn enter_events(&mut self) -> Result<(), Fault>;
-    /// Lets an event happen.
+    /// Handles an event.
     fn update_discrete(&mut self) -> Result<Discrete, Fault>;
-    /// Enters the mode in which time goes on.
+    /// Enters the mode of continuous time.
     fn enter_continuous(&mut self) -> Result<(), Fault>;
     /// Sets the time, s.
     fn set_time(&mut self, time: f64) -> Result<(), Fault>;
@@ -77,9 +77,9 @@ pub trait Instance {
     fn states(&mut self, into: &mut [f64]) -> Result<(), Fault>;
     /// Derivatives of continuous states.
     fn derivatives(&mut self, into: &mut [f64]) -> Result<(), Fault>;
-    /// Event indicators; `into` gets their number.
+    /// Event indicators; `into` is resized to their number.
     fn indicators(&mut self, into: &mut Vec<f64>) -> Result<(), Fault>;
-    /// A step of the integrator is done: whether the unit wants an event, or ends its motion.
+    /// Reports the end of an integrator's step; returns whether the unit wants an event, or ends its motion.
     fn completed(&mut self) -> Result<Discrete, Fault>;
 }
 
@@ -101,7 +101,7 @@ impl Native {
     /// Loads the library of a unit for this platform.
     ///
     /// # Errors
-    /// Where there is none, or it lacks a function.
+    /// If there is none, or it lacks a function.
     pub fn load(unit: &Unit, folder: &Path, interface: Interface) -> Result<Self, Fault> {
         let name =
             unit.library(interface).ok_or_else(|| Fault::Library("it has none for this interface".to_owned()))?;
@@ -117,7 +117,7 @@ impl Native {
     /// A new instance.
     ///
     /// # Errors
-    /// Where the unit makes none.
+    /// If the unit makes none.
     pub fn instance(&self) -> Result<Box<dyn Instance + '_>, Fault> {
         let (token, resources, interface) = (&self.token, &self.resources, self.interface);
         Ok(match &self.library {
@@ -132,7 +132,7 @@ fn checked(function: &'static str, status: i32) -> Result<(), Fault> {
     if (0..=1).contains(&status) { Ok(()) } else { Err(Fault::Status { function, status }) }
 }
 
-/// A whole number of a type; beyond 2^53 a value is not one number.
+/// An integer of type `T`; beyond 2^53 a value does not determine an integer.
 fn whole<T: TryFrom<i64>>(value: f64) -> Result<T, Fault> {
     let is_whole = value.fract() == 0.0 && value.abs() <= 9_007_199_254_740_992.0;
     let found = if is_whole { T::try_from(value as i64).ok() } else { None };

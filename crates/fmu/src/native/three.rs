@@ -13,7 +13,7 @@ use crate::unit::{Interface, NumberType};
 
 type Own = *mut c_void;
 type Log = extern "C" fn(*mut c_void, c_int, *const c_char, *const c_char);
-/// `fmi3IntermediateUpdateCallback`, which is never given.
+/// `fmi3IntermediateUpdateCallback`, which is never passed.
 type Update = Option<extern "C" fn()>;
 
 functions! {
@@ -93,15 +93,15 @@ impl<'f> Three<'f> {
     /// A new instance.
     ///
     /// # Errors
-    /// Where the unit makes none.
+    /// If the unit makes none.
     pub fn new(functions: &'f Functions, token: &str, resources: &Path, interface: Interface) -> Result<Self, Fault> {
         let none = |_| Fault::Library("its description has a zero byte".to_owned());
         let token = CString::new(token).map_err(none)?;
-        // With a separator at the end, as the standard says.
+        // With a separator at the end, as the standard requires.
         let resources = CString::new(format!("{}{}", resources.display(), std::path::MAIN_SEPARATOR)).map_err(none)?;
         let (name, token, resources) = (c"mbint".as_ptr(), token.as_ptr(), resources.as_ptr());
         let nobody = ptr::null_mut();
-        // SAFETY: texts end with zero; there is no environment, and the callback keeps nothing.
+        // SAFETY: texts end with zero; there is no environment, and the callback stores nothing.
         let instance = unsafe {
             match (functions.co_simulation, functions.model_exchange) {
                 (Some(make), _) if interface == Interface::CoSimulation => {

@@ -15,7 +15,7 @@ type Own = *mut c_void;
 /// `fmi2Discard`.
 const DISCARD: c_int = 2;
 
-/// `fmi2LastSuccessfulTime` and `fmi2Terminated`, of a step that was discarded.
+/// `fmi2LastSuccessfulTime` and `fmi2Terminated`, queried after a discarded step.
 const LAST_TIME: c_int = 2;
 const TERMINATED: c_int = 3;
 
@@ -71,7 +71,7 @@ pub struct Two<'f> {
     functions: &'f Functions,
     instance: Own,
     indicators: usize,
-    /// The instance keeps a pointer to them.
+    /// The instance stores a pointer to them.
     _callbacks: Box<Callbacks>,
 }
 
@@ -79,7 +79,7 @@ impl<'f> Two<'f> {
     /// A new instance.
     ///
     /// # Errors
-    /// Where the unit makes none.
+    /// If the unit makes none.
     pub fn new(
         functions: &'f Functions,
         token: &str,

@@ -3,11 +3,11 @@
 use super::steps::Steps;
 use crate::native::{Fault, Instance};
 
-/// Moves an initialised instance from row to row; `row` is called in each. With `step`, s, communication steps are no
-/// longer than that.
+/// Moves an initialised instance from row to row, calling `row` at each. Communication steps are at most `step` long,
+/// s.
 ///
 /// # Errors
-/// Where a step fails.
+/// If a step fails.
 pub fn run(
     instance: &mut dyn Instance,
     times: &[f64],
@@ -19,11 +19,11 @@ pub fn run(
     for pair in times.windows(2) {
         let steps = Steps::between(pair[0], pair[1], step);
         for index in 0..steps.count {
-            // Only the last row may be where it ends.
+            // The motion may end at the last row only.
             if let Some(time) = ended {
                 return Err(Fault::Terminated(time));
             }
-            // Rows at equal distances get steps of one length: a unit's own clock is not asked for a last digit more.
+            // Equidistant rows get steps of one length, not corrected for rounding of the unit's own clock.
             let ends = instance.step(steps.time(index), steps.size())?;
             ended = ends.then(|| steps.time(index + 1));
         }

@@ -1,5 +1,5 @@
-//! A motion of a unit at a point, and answers to points. A browser loads no libraries: there a unit is a task that
-//! nobody answers.
+//! A motion of a unit at a point, and answers to points. A browser loads no libraries: there, nobody answers the task
+//! of a unit.
 
 #[cfg(any(unix, windows))]
 mod co_simulation;

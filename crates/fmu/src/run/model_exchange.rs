@@ -1,6 +1,6 @@
-//! Model exchange: the unit's equations are integrated for it, by Dormand and Prince's method of fifth order with fixed
-//! steps, so that all samples share their times. Steps end at events: at those whose time the unit says, and where an
-//! indicator changes its sign, which is found by bisection of the step.
+//! Model exchange: the unit's equations are integrated by Dormand and Prince's method of fifth order with fixed steps,
+//! so that all samples share their times. Steps end at events: at times that the unit announces, and at sign changes of
+//! an indicator, which are located by bisection of the step.
 //!
 //! Source: Dormand, Prince, A family of embedded Runge-Kutta formulae, J. Comput. Appl. Math. 6 (1980) 19-26.
 
@@ -8,7 +8,7 @@ use super::steps::Steps;
 use super::tuning::TUNING;
 use crate::native::{Discrete, Fault, Instance};
 
-/// Rows of the method, without its seventh stage, which only an error would need.
+/// Rows of the method, without its seventh stage, which only an error estimate would need.
 const STAGES: [&[f64]; 6] = [
     &[],
     &[1.0 / 5.0],
@@ -37,10 +37,10 @@ struct Motion<'i> {
     events: usize,
 }
 
-/// Integrates an initialised instance from row to row by steps no longer than `step`, s; `row` is called in each.
+/// Integrates an initialised instance from row to row by steps of at most `step`, s, calling `row` at each.
 ///
 /// # Errors
-/// Where a function fails, and where there is no end of events.
+/// If a function fails, or events do not end.
 pub fn run(
     instance: &mut dyn Instance,
     states: usize,
@@ -74,7 +74,7 @@ pub fn run(
 }
 
 impl Motion<'_> {
-    /// Moves on to a time, s, by one step, or by several where events are between; `whole` is the step's full length.
+    /// Moves on to a time, s, by one step, or by several if events are between; `whole` is the step's full length.
     fn go_to(&mut self, end: f64, whole: f64) -> Result<(), Fault> {
         while end - self.time > TUNING.no_step * whole {
             let is_event = self.next.is_some_and(|next| next <= end);
@@ -106,7 +106,7 @@ impl Motion<'_> {
         Ok(())
     }
 
-    /// States after a step of a length, s, as `trial`; the motion stays.
+    /// Computes the states after a step of a length, s, as `trial`; the motion does not advance.
     fn step(&mut self, length: f64) -> Result<(), Fault> {
         for stage in 0..STAGES.len() {
             self.combine(STAGES[stage], length);
@@ -118,7 +118,7 @@ impl Motion<'_> {
         Ok(())
     }
 
-    /// `trial` is the states and a combination of slopes.
+    /// Sets `trial` to the states plus a combination of slopes.
     fn combine(&mut self, weights: &[f64], length: f64) {
         for (index, trial) in self.trial.iter_mut().enumerate() {
             let slope: f64 = weights.iter().zip(&self.slopes).map(|(weight, slope)| weight * slope[index]).sum();
@@ -142,7 +142,7 @@ impl Motion<'_> {
         Ok(self.indicators.iter().zip(&self.others).any(|(a, b)| (*a > 0.0) != (*b > 0.0)))
     }
 
-    /// Goes to the states of `trial`.
+    /// Moves to the states of `trial`.
     fn arrive(&mut self, time: f64) -> Result<(), Fault> {
         self.time = time;
         self.states.copy_from_slice(&self.trial);
@@ -153,7 +153,7 @@ impl Motion<'_> {
     /// Whether the unit ends its motion with the last row.
     ///
     /// # Errors
-    /// Where it does so before.
+    /// If it does so before.
     fn ends(&self, found: Discrete) -> Result<bool, Fault> {
         match found.terminates && self.end - self.time > TUNING.no_step * self.end {
             true => Err(Fault::Terminated(self.time)),
@@ -161,7 +161,7 @@ impl Motion<'_> {
         }
     }
 
-    /// Lets an event happen now.
+    /// Handles an event now.
     fn event(&mut self) -> Result<(), Fault> {
         self.events += 1;
         if self.events > TUNING.most_events {
@@ -171,12 +171,12 @@ impl Motion<'_> {
         self.happen()
     }
 
-    /// Discrete states until they stay, from the mode of events to that of time.
+    /// Updates discrete states until they stay, from the mode of events to that of continuous time.
     fn happen(&mut self) -> Result<(), Fault> {
         let mut repetitions = 0;
         loop {
             let found = self.instance.update_discrete()?;
-            // The unit stays in the mode of events: nothing more than values is asked.
+            // The unit stays in the mode of events: only values are read after this.
             if self.ends(found)? {
                 return Ok(());
             }

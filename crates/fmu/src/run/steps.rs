@@ -4,24 +4,24 @@
 pub struct Steps {
     from: f64,
     to: f64,
-    /// Number of them.
+    /// Number of steps.
     pub count: usize,
 }
 
 impl Steps {
-    /// From one row to the next, s; none is longer than `longest`, s.
+    /// Steps from one row to the next, s; none is longer than `longest`, s.
     pub fn between(from: f64, to: f64, longest: f64) -> Self {
-        // A distance that is a multiple but for rounding is one.
+        // A multiple of `longest` up to rounding counts as one.
         let count = (((to - from) / longest - 1e-9).ceil()).max(1.0) as usize;
         Self { from, to, count }
     }
 
-    /// Size of each, s.
+    /// Size of each step, s.
     pub fn size(&self) -> f64 {
         (self.to - self.from) / self.count as f64
     }
 
-    /// Time after `index` of them, s.
+    /// Time after `index` steps, s.
     pub fn time(&self, index: usize) -> f64 {
         if index == self.count { self.to } else { self.from + index as f64 * self.size() }
     }

@@ -1,4 +1,4 @@
-//! What a process is asked of a unit.
+//! The task of a process: variables of a unit to set and to read.
 
 use std::fs;
 use std::path::Path;
@@ -8,13 +8,13 @@ use tempfile::TempDir;
 
 use crate::unit::{Interface, NotRead, NumberType, unpack};
 
-/// The name among parameters under which the length of steps comes, s; no parameter can have it.
+/// The name among parameters that carries the length of steps, s; no parameter can have it.
 pub const STEP: &str = "length of a step";
 
 /// File of the task in the folder of an unpacked unit.
 const FILE: &str = "mbint-task.json";
 
-/// A variable of the unit, and how its numbers become those of SI.
+/// A variable of the unit, and the conversion of its numbers to SI.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Access {
     /// Its name in points and answers.
@@ -23,9 +23,9 @@ pub struct Access {
     pub kind: NumberType,
     /// Its number in the unit.
     pub reference: u32,
-    /// What one of its unit is in SI.
+    /// Value of its unit in SI.
     pub factor: f64,
-    /// What nothing of its unit is in SI.
+    /// Value in SI of a zero in its unit.
     pub offset: f64,
 }
 
@@ -41,10 +41,10 @@ impl Access {
     }
 }
 
-/// What a process is asked.
+/// The task of a process.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Task {
-    /// How the unit moves on.
+    /// Interface by which the unit moves on.
     pub interface: Interface,
     /// Variables that are set.
     pub parameters: Vec<Access>,
@@ -52,7 +52,7 @@ pub struct Task {
     pub outputs: Vec<Access>,
 }
 
-/// A unit in a folder of its own, with its task; the folder goes with it.
+/// A unit in a folder of its own, with its task; the folder is deleted when this is dropped.
 #[derive(Debug)]
 pub struct Unpacked(TempDir);
 
@@ -60,7 +60,7 @@ impl Unpacked {
     /// Unpacks a unit.
     ///
     /// # Errors
-    /// Where it cannot be read, or there is no folder for it.
+    /// If it cannot be read, or there is no folder for it.
     pub fn new(unit: &Path, task: &Task) -> Result<Self, NotRead> {
         let folder = tempfile::Builder::new().prefix("mbint-fmu-").tempdir()?;
         unpack(unit, folder.path())?;
@@ -79,7 +79,7 @@ impl Task {
     /// The task in the folder of an unpacked unit.
     ///
     /// # Errors
-    /// Where there is none.
+    /// If there is none.
     pub fn read(folder: &Path) -> std::io::Result<Self> {
         Ok(serde_json::from_str(&fs::read_to_string(folder.join(FILE))?)?)
     }

@@ -11,7 +11,7 @@ tuning! {
         most_repetitions: usize = 1000, moves "which units are refused";
         /// Halvings of a step in which an indicator changes its sign.
         halvings_of_step: usize = 48, moves "answers of units of model exchange";
-        /// Share of a step that is not worth a step of its own.
+        /// Share of a step below which the rest is no separate step.
         no_step: f64 = 1e-12, moves "answers of units of model exchange";
     }
 }

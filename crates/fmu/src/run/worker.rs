@@ -32,11 +32,11 @@ struct Answer<'a> {
     outputs: BTreeMap<&'a str, Vec<Option<f64>>>,
 }
 
-/// Answers points until there are no more, by the unit in a folder that [`super::Unpacked`] made. Every point has an
-/// instance of its own: nothing of another one is in its answer.
+/// Answers points until there are no more, with the unit in a folder that [`super::Unpacked`] made. Every point has an
+/// instance of its own, so that no other point affects its answer.
 ///
 /// # Errors
-/// Where the folder has no unit, its library cannot be loaded, or input or output ends in the middle of a line.
+/// If the folder has no unit, its library cannot be loaded, or input or output ends in the middle of a line.
 pub fn answer(folder: &Path, input: impl BufRead, mut output: impl Write) -> std::io::Result<()> {
     let task = Task::read(folder)?;
     let text = std::fs::read_to_string(folder.join("modelDescription.xml"))?;
@@ -57,7 +57,7 @@ pub fn answer(folder: &Path, input: impl BufRead, mut output: impl Write) -> std
     Ok(())
 }
 
-/// Values of each output in each row; numbers that are not finite are none.
+/// Values of each output in each row; `None` if not finite.
 fn motion(task: &Task, unit: &Unit, native: &Native, asked: &Asked) -> Result<Vec<Vec<Option<f64>>>, Fault> {
     let mut instance = native.instance()?;
     for own in &task.parameters {

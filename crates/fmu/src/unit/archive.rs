@@ -1,4 +1,4 @@
-//! The zip archive that a unit is.
+//! The zip archive of a unit.
 
 use std::fs::{self, File};
 use std::io::Read;
@@ -17,7 +17,7 @@ const DESCRIPTION: &str = "modelDescription.xml";
 /// SHA-256 of a file, in hexadecimal digits.
 ///
 /// # Errors
-/// Where it cannot be read.
+/// If it cannot be read.
 pub fn digest(path: &Path) -> std::io::Result<String> {
     let (mut file, mut hash, mut buffer) = (File::open(path)?, Sha256::new(), vec![0; 1 << 16]);
     loop {
@@ -32,7 +32,7 @@ pub fn digest(path: &Path) -> std::io::Result<String> {
 /// Text of the description of a unit.
 ///
 /// # Errors
-/// Where the file is no archive that has one.
+/// If the file is not an archive with a description.
 pub(super) fn description(path: &Path) -> Result<String, NotRead> {
     let mut text = None;
     each(path, |name, content| {
@@ -49,7 +49,7 @@ pub(super) fn description(path: &Path) -> Result<String, NotRead> {
 /// Writes all files of a unit below a folder.
 ///
 /// # Errors
-/// Where an entry cannot be read or written, or leads out of the folder.
+/// If an entry cannot be read or written, or leads out of the folder.
 pub fn unpack(path: &Path, folder: &Path) -> Result<(), NotRead> {
     each(path, |name, content| {
         let target = folder.join(name);

@@ -18,12 +18,12 @@ pub enum Version {
     Three,
 }
 
-/// How a unit moves on.
+/// Interface by which a unit moves on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Interface {
     /// By steps of its own.
     CoSimulation,
-    /// By its derivatives, which are integrated for it.
+    /// By its derivatives, which mbint integrates.
     ModelExchange,
 }
 
@@ -34,33 +34,33 @@ pub struct Unit {
     pub version: Version,
     /// `guid` or `instantiationToken`.
     pub token: String,
-    /// Name of its library for co-simulation, where it has that.
+    /// Name of its library for co-simulation, if it has one.
     pub co_simulation: Option<String>,
-    /// Name of its library for model exchange, where it has that.
+    /// Name of its library for model exchange, if it has one.
     pub model_exchange: Option<String>,
     /// Its variables.
     pub variables: Vec<Variable>,
-    /// Its units, by name; `None` of one that is not reduced to SI.
+    /// Its units, by name; `None` for one that is not reduced to SI.
     pub units: HashMap<String, Option<BaseUnit>>,
     /// Number of continuous states.
     pub states: usize,
-    /// Number of event indicators, in FMI 2.0; an instance is asked in 3.0.
+    /// Number of event indicators, in FMI 2.0; in 3.0 an instance reports it.
     pub indicators: usize,
 }
 
 impl Unit {
-    /// Of a unit's file.
+    /// Reads a unit's file.
     ///
     /// # Errors
-    /// Where it is no archive with a description that can be read.
+    /// If it is not an archive with a readable description.
     pub fn read(path: &Path) -> Result<Self, NotRead> {
         Self::of_text(&archive::description(path)?)
     }
 
-    /// Of a description.
+    /// Parses a description.
     ///
     /// # Errors
-    /// Where it is not one of FMI 2.0 or 3.0.
+    /// If it is not one of FMI 2.0 or 3.0.
     pub fn of_text(text: &str) -> Result<Self, NotRead> {
         let document = Document::parse(text.trim_start_matches('\u{feff}'))?;
         let root = document.root_element();
@@ -141,7 +141,7 @@ fn is_identifier(name: &str) -> bool {
 /// Units of declared types, by the types' names.
 fn types(root: Node) -> HashMap<String, String> {
     let declared = children(root, "TypeDefinitions").flat_map(|own| own.children()).filter(Node::is_element);
-    // The unit stands in the type itself in 3.0, and in its `Real` in 2.0.
+    // In 3.0 the type itself has the unit, in 2.0 its `Real`.
     let unit = |node: Node| node.descendants().find_map(|own| own.attribute("unit").map(str::to_owned));
     declared.filter_map(|node| Some((node.attribute("name")?.to_owned(), unit(node)?))).collect()
 }
@@ -152,7 +152,7 @@ fn units(root: Node) -> HashMap<String, Option<BaseUnit>> {
     named.map(|(name, node)| (name, children(node, "BaseUnit").next().and_then(base_unit))).collect()
 }
 
-/// A unit in SI; nothing where a number of it is none.
+/// A unit in SI; `None` if one of its numbers cannot be parsed.
 fn base_unit(node: Node) -> Option<BaseUnit> {
     let mut exponents = [0; 8];
     for (exponent, base) in exponents.iter_mut().zip(BASES) {

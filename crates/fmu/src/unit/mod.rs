@@ -9,7 +9,7 @@ pub use archive::{digest, unpack};
 pub use description::{Interface, Unit, Version};
 pub use variable::{BaseUnit, NumberType, Variable};
 
-/// Why a file is not read as a unit.
+/// Reasons why a file cannot be read as a unit.
 #[derive(Debug, thiserror::Error)]
 pub enum NotRead {
     /// It cannot be read.
@@ -32,7 +32,7 @@ pub enum NotRead {
     /// The description is not XML.
     #[error("`modelDescription.xml`: {0}")]
     Xml(#[from] roxmltree::Error),
-    /// The description lacks something, or has something else in its place.
+    /// The description lacks something, or has something else instead.
     #[error("`modelDescription.xml`: {0}")]
     Description(String),
 }

@@ -36,11 +36,11 @@ pub struct Variable {
     pub name: String,
     /// Its number.
     pub reference: u32,
-    /// Its type; the word of the description where it is not one number of a type that is known here.
+    /// Its type; the word of the description if it is not a single number of a type known here.
     pub kind: Result<NumberType, String>,
     /// `parameter`, `input`, `output`, `local`, …
     pub causality: String,
-    /// Value at the start, where it may be set before.
+    /// Value at the start, if it may be set before.
     pub start: Option<f64>,
     /// Whether its start value can be set.
     pub is_settable: bool,
@@ -53,17 +53,17 @@ pub struct Variable {
 pub struct BaseUnit {
     /// Exponents of kg, m, s, A, K, mol, cd and rad.
     pub exponents: [i32; 8],
-    /// What one of it is in SI.
+    /// Value of the unit in SI.
     pub factor: f64,
-    /// What nothing of it is in SI.
+    /// Value in SI of a zero in the unit.
     pub offset: f64,
 }
 
-/// Base units in the order of [`BaseUnit::exponents`], as attributes are called.
+/// Base units in the order of [`BaseUnit::exponents`], by the names of their attributes.
 pub(super) const BASES: [&str; 8] = ["kg", "m", "s", "A", "K", "mol", "cd", "rad"];
 
 impl BaseUnit {
-    /// Its SI unit as a product: `kg*m^2*s^-2`; `1` of a number.
+    /// Its SI unit as a product: `kg*m^2*s^-2`; `1` for a number.
     pub fn text(&self) -> String {
         let powers = BASES.iter().zip(self.exponents).filter(|(_, exponent)| *exponent != 0);
         let powers: Vec<String> = powers

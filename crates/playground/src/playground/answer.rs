@@ -1,4 +1,4 @@
-//! What a page is answered.
+//! Answers to a page.
 
 use std::collections::BTreeMap;
 
@@ -20,15 +20,15 @@ struct Answer {
     #[serde(skip_serializing_if = "Option::is_none")]
     scene: Option<String>,
     diagnostics: Vec<Record>,
-    /// Why there are no results.
+    /// Reason why there are no results.
     #[serde(skip_serializing_if = "Option::is_none")]
     error: Option<String>,
-    /// Whether it was not run because that would take long.
+    /// Whether the run was refused because it would take long.
     waits: bool,
-    /// The summary as a terminal shows it.
+    /// The summary as on a terminal.
     #[serde(skip_serializing_if = "Option::is_none")]
     summary: Option<String>,
-    /// What to know before believing the results.
+    /// Warnings to read before believing the results.
     warnings: Vec<String>,
     /// Files of the results by their names: tables, plots, the report.
     files: BTreeMap<String, String>,
@@ -40,7 +40,7 @@ pub fn answer(question: &[u8], host: &dyn Host) -> Vec<u8> {
         Ok(question) => of(&question, host),
         Err(error) => Answer { error: Some(format!("the question cannot be read: {error}")), ..Answer::default() },
     };
-    // All of it is text and numbers.
+    // It consists of text and numbers only.
     serde_json::to_vec(&answer).unwrap_or_default()
 }
 

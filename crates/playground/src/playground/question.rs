@@ -1,4 +1,4 @@
-//! What a page asks.
+//! Questions of a page.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -8,14 +8,14 @@ use serde::Deserialize;
 use crate::model::{Opened, read_open};
 use crate::syntax::within::OpenTexts;
 
-/// A model and what to do with it.
+/// A model, and the task.
 #[derive(Debug, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub(super) struct Question {
     pub task: Task,
     /// Path of the model among the files.
     pub model: String,
-    /// The scene to run; the first where it is absent, or none of the model.
+    /// The scene to run; if absent the first one, or the model itself if it has no scenes.
     #[serde(default)]
     pub scene: Option<String>,
     /// Whether a run may take long.
@@ -25,13 +25,13 @@ pub(super) struct Question {
     pub files: BTreeMap<String, String>,
 }
 
-/// What to do with a model.
+/// Task for a model.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
 #[serde(rename_all = "snake_case")]
 pub(super) enum Task {
-    /// To read it.
+    /// Read it.
     Check,
-    /// To read it, run it and show the results.
+    /// Read it, run it and show the results.
     Run,
 }
 

@@ -1,4 +1,4 @@
-//! A model, run.
+//! Runs of a model.
 
 use std::collections::BTreeMap;
 use std::fmt::Display;
@@ -12,9 +12,9 @@ use crate::results::{Provenance, RunRequest};
 use crate::simulate::Interruption;
 use crate::study::{self, MotionOptions, Options, RunError};
 
-/// What runs are told to.
+/// Receiver of progress reports.
 pub trait Host: Sync {
-    /// The activity, and which fraction of it is done.
+    /// Reports the activity, and its finished fraction.
     fn progress(&self, stage: &str, fraction: f64);
 }
 
@@ -26,14 +26,14 @@ pub(super) struct Run {
     pub failure: Option<String>,
 }
 
-/// Why there are none.
+/// Reason why there are no results.
 pub(super) struct Unrun {
     pub why: String,
-    /// Whether that is because it would take long.
+    /// Whether the reason is that the run would take long.
     pub waits: bool,
 }
 
-/// Runs a model that was read without errors: its scene of a name, or itself.
+/// Runs a model that was read without errors: its scene named `scene`, or itself.
 pub(super) fn run(reading: Reading, scene: Option<&str>, costly: bool, host: &dyn Host) -> Result<Run, Unrun> {
     let (model_files, texts) = study::sources(&reading);
     let names: Vec<String> = scene.iter().map(|name| (*name).to_owned()).collect();
