@@ -1,10 +1,10 @@
-//! The studio (`mbint studio`): a page for one person on one machine, on which the text of a model is edited with the
-//! language server's help, its mechanism is moved, and its bounds come in as they are computed.
+//! The studio (`mbint studio`): a page for one person on one machine. It edits the text of a model with the language
+//! server's help, moves its mechanism, and shows its bounds as they are computed.
 
 #![forbid(unsafe_code)]
 #![cfg_attr(test, allow(clippy::disallowed_methods, reason = "tests compare with the standard library's functions"))]
 
-// Rooms of the crates below keep their names here.
+// Rooms of the crates below are reachable under their names here.
 use mbint_engine::simulate;
 use mbint_export::export;
 use mbint_language::syntax;

@@ -3,14 +3,14 @@
 use std::path::Path;
 use std::process::Command;
 
-/// The output of a program, without the white space around; nothing where it cannot be run or fails.
+/// The output of a program, trimmed; empty if it cannot be run or fails.
 pub fn said(root: &Path, program: &str, arguments: &[&str]) -> String {
     let output = Command::new(program).args(arguments).current_dir(root).output();
     let output = output.ok().filter(|output| output.status.success());
     output.map_or(String::new(), |output| String::from_utf8_lossy(&output.stdout).trim().to_owned())
 }
 
-/// Hash of the commit; `+` after it where tracked files differ from it.
+/// Hash of the commit, followed by `+` if tracked files differ from it.
 pub fn commit(root: &Path) -> String {
     let changed = !said(root, "git", &["status", "--porcelain", "--untracked-files=no"]).is_empty();
     said(root, "git", &["rev-parse", "--short=8", "HEAD"]) + if changed { "+" } else { "" }
@@ -21,7 +21,7 @@ pub fn date(root: &Path) -> String {
     said(root, "date", &["-u", "+%Y-%m-%d"])
 }
 
-/// Name of the processor where the system tells it, else its architecture; and the system.
+/// Name of the processor if the system reports it, otherwise its architecture; and the system.
 pub fn processor() -> String {
     let processors = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
     let name = processors.lines().find_map(|line| line.strip_prefix("model name")?.split_once(": "));

@@ -1,7 +1,7 @@
 //! Rules about text that neither rustfmt nor clippy checks.
 //!
-//! A rule counts its violations in the tracked files and has a limit. Where a limit is above zero, it is the number
-//! that was there when the rule was written: it may fall, never rise.
+//! A rule counts its violations in the tracked files and has a limit. A limit above zero is the number of violations
+//! when the rule was written: it may fall, never rise.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -29,7 +29,7 @@ const RULES: [Rule; 6] = [
 /// Limits of all rules but the last.
 const LIMITS: [usize; 5] = [0, 60, 21, 172, 11];
 
-/// The rules that see more than a line.
+/// Indices of the rules that need more than a line.
 const HOMONYMS: usize = 4;
 const STRAY_FILES: usize = 5;
 
@@ -112,8 +112,8 @@ fn tuple_parameter(path: &str, line: &str) -> usize {
     usize::from(is_parameter && !line.trim_start().starts_with("let "))
 }
 
-/// A constant of a number that stands beside the code: a fact, such as a coefficient of a tableau or a width of a page.
-/// Limits and thresholds are in the room's `tuning.rs` (decision 0157).
+/// A constant of a number outside of the room's `tuning.rs`: a fact, such as a coefficient of a tableau or a width of a
+/// page. Limits and thresholds are in `tuning.rs` (decision 0157).
 fn numeric_constant(path: &str, line: &str) -> usize {
     let is_source = is_rust(path) && (path.starts_with("src/") || path.contains("/src/"));
     let constant =
@@ -123,7 +123,7 @@ fn numeric_constant(path: &str, line: &str) -> usize {
     usize::from(is_source && typed.is_some_and(counts))
 }
 
-/// The crate and the name of a type that a line of a file's outermost level makes public.
+/// The crate and the name of a public type that a line at a file's outermost level declares.
 fn public_type(path: &str, line: &str) -> Option<(String, String)> {
     let own = if path.starts_with("src/") { "src" } else { path.strip_prefix("crates/")?.split('/').next()? };
     let (_, rest) = line.split_once(' ').filter(|(first, _)| is_rust(path) && first.starts_with("pub"))?;

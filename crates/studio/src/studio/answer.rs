@@ -1,4 +1,4 @@
-//! Answers over HTTP, with the headers that keep a page to itself.
+//! Answers over HTTP, with the headers that isolate a page.
 
 use std::io::{self, Write};
 
@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; img-src data:; \
                       connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 
-/// That of a report, which has a policy of its own.
+/// Policy of a report, whose page has a policy of its own.
 const REPORT: &str = "frame-ancestors 'none'";
 
 /// An answer.
@@ -41,10 +41,10 @@ impl Answer {
         Self { status, ..Self::json(&json!({ "error": why })) }
     }
 
-    /// Writes it, as the last thing of its connection.
+    /// Writes it; the connection has no further answer.
     ///
     /// # Errors
-    /// Where the other end is gone.
+    /// If the other end has closed.
     pub fn write(&self, to: &mut impl Write) -> io::Result<()> {
         let reason = match self.status {
             200 => "OK",

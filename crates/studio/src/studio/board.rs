@@ -1,4 +1,4 @@
-//! Notes for the page: the latest of each topic, numbered, so that a page asks for the new ones alone.
+//! Notes for the page: the latest of each topic, numbered, so that a page asks for the new ones only.
 
 use std::collections::BTreeMap;
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
@@ -22,12 +22,12 @@ pub struct Board {
 }
 
 impl Board {
-    /// A panic in between leaves whole notes.
+    /// Locks the notes; a panic elsewhere leaves them consistent.
     fn lock(&self) -> MutexGuard<'_, Notes> {
         self.notes.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Replaces the note on a topic, where the new one differs.
+    /// Replaces the note on a topic, if the new one differs.
     pub fn put(&self, topic: &'static str, note: Value) {
         let mut notes = self.lock();
         if notes.topics.get(topic).is_some_and(|(_, known)| *known == note) {
@@ -39,7 +39,8 @@ impl Board {
         self.bell.notify_all();
     }
 
-    /// Everything behind a number, as soon as there is something: `{latest, topics}`. Of another session's number, all.
+    /// All notes after a number, as soon as there are any, or after some time: `{latest, topics, ended}`. For the
+    /// number of another session, all notes.
     pub fn after(&self, number: u64) -> Value {
         let notes = self.lock();
         let number = if number > notes.latest { 0 } else { number };
@@ -51,7 +52,7 @@ impl Board {
         json!({ "latest": notes.latest, "topics": topics, "ended": notes.is_ended })
     }
 
-    /// Nothing more comes.
+    /// Ends the board: no more notes follow.
     pub fn end(&self) {
         self.lock().is_ended = true;
         self.bell.notify_all();

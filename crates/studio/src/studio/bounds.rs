@@ -1,4 +1,4 @@
-//! The model as it is typed: read, and bounded, the coarse first.
+//! Reads the model while it is typed, and bounds it, coarsely first.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -15,7 +15,7 @@ use crate::model::{Description, Opened, read_open};
 use crate::results::{Bounds, Provenance, Summary};
 use crate::study::{self, Options, RunError};
 
-/// A study of a series: each takes longer than the one before, and says more.
+/// A study of a series: each takes longer than the one before, and yields more.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Stage {
     Nominal,
@@ -32,14 +32,14 @@ impl Stage {
         }
     }
 
-    /// The model with the bounds of this stage; `None` where the stage says nothing of it.
+    /// The model with the bounds of this stage; `None` if the stage does not apply to it.
     fn of(self, description: &Description) -> Option<Description> {
         let mut model = description.clone();
         let k = description.uncertain().count();
         if self == Self::Asked {
             return Some(model);
         }
-        // Random excitations are bounded in another way where no statistics are asked for.
+        // Random excitations are bounded differently if no statistics are requested.
         if k == 0 || self == Self::Coarse && model.statistics.asked {
             return None;
         }
@@ -48,7 +48,7 @@ impl Stage {
         match self {
             Self::Coarse if k <= TUNING.few_parameters => model.bounds.chebyshev = Some(Chebyshev::of_order(1, k)),
             Self::Coarse => model.bounds.taylor = Some(Taylor { order: 1, ..Taylor::default() }),
-            // Without bounds there are no verdicts.
+            // There are no verdicts without bounds.
             _ => model.requirements.clear(),
         }
         Some(model)
@@ -72,7 +72,7 @@ fn study_of(desk: &Desk, reading: &Reading, opened: Opened) {
     let sources = opened.reading.diagnostics.sources.all();
     let sources: Vec<PathBuf> =
         sources.map(|source| PathBuf::from(&source.name)).filter(|path| path.is_file()).collect();
-    // Tables and robots are no texts of the language.
+    // Tables and robots are not texts of the language.
     let is_text = |path: &&PathBuf| path.extension().is_some_and(|own| own == "yaml" || own == "yml");
     let texts = sources.iter().filter(is_text).cloned().collect();
     desk.was_read_from(sources, texts);

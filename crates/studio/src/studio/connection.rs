@@ -21,10 +21,10 @@ pub struct Head {
 }
 
 impl Head {
-    /// The head at the beginning of some bytes; `None` where it does not end in them.
+    /// The head at the beginning of some bytes; `None` if it does not end in them.
     ///
     /// # Errors
-    /// Where it is none.
+    /// If they are not a head.
     fn parse(bytes: &[u8]) -> Result<Option<Self>, httparse::Error> {
         let mut headers = [httparse::EMPTY_HEADER; TUNING.headers];
         let mut request = httparse::Request::new(&mut headers);
@@ -37,12 +37,12 @@ impl Head {
         Ok(Some(Self { method, url, headers: request.headers.iter().map(header).collect(), length }))
     }
 
-    /// A header by its name in lower case; that which stands first, so that a second one adds nothing.
+    /// A header by its name in lower case; the first one, so that a second one has no effect.
     fn header(&self, name: &str) -> Option<&str> {
         self.headers.iter().find(|(known, _)| known == name).map(|(_, value)| value.as_str())
     }
 
-    /// Whose the request is.
+    /// The parts that identify the caller.
     pub fn caller(&self) -> Caller<'_> {
         Caller {
             url: &self.url,
@@ -66,7 +66,7 @@ impl Connection {
     /// Reads a head.
     ///
     /// # Errors
-    /// Where there is none, or it is too long, or the other end is silent.
+    /// If there is none, it is too long, or the other end is silent.
     pub fn open(mut stream: TcpStream) -> io::Result<Self> {
         stream.set_read_timeout(Some(TUNING.silence))?;
         stream.set_write_timeout(Some(TUNING.silence))?;
@@ -94,7 +94,7 @@ impl Connection {
     /// Reads the body, a text.
     ///
     /// # Errors
-    /// An answer that says why there is none.
+    /// An answer with the reason.
     pub fn body(&mut self) -> Result<String, Answer> {
         let head = &self.head;
         if head.header("transfer-encoding").is_some() {
@@ -125,9 +125,9 @@ impl Connection {
     }
 }
 
-/// Writes an answer and closes. An end that closes while it has unread bytes would take its answer back.
+/// Writes an answer and closes. Closing with unread bytes would discard the answer, so they are read first.
 fn close(stream: &mut TcpStream, answer: &Answer) {
-    // An end that is gone reads nothing.
+    // Nothing to do if the other end has closed.
     if answer.write(stream).is_ok() && stream.shutdown(Shutdown::Write).is_ok() {
         let _ = stream.set_read_timeout(Some(TUNING.linger));
         let _ = io::copy(&mut stream.take(TUNING.dropped_bytes), &mut io::sink());

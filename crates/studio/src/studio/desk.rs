@@ -1,4 +1,4 @@
-//! The state that page and workers share: the texts, the last model without errors, its results, notes and questions.
+//! The state shared by page and workers: the texts, the last model without errors, its results, notes and questions.
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -16,13 +16,13 @@ use crate::syntax::within::OpenTexts;
 
 /// A model that could be read.
 pub struct Current {
-    /// Its number: the next one has a greater one.
+    /// Its number, greater than those of earlier models.
     pub number: u64,
     /// The model, or one of its scenes.
     pub description: Description,
 }
 
-/// A study that is done.
+/// A finished study.
 pub struct Finished {
     /// The model.
     pub current: Arc<Current>,
@@ -32,9 +32,9 @@ pub struct Finished {
     pub summary: Summary,
 }
 
-/// The texts and choices that a reading of the model starts from.
+/// The texts and choices from which a model is read.
 pub struct Reading {
-    /// Number of the change that is read.
+    /// Number of the change to read.
     pub change: u64,
     /// The model's full path.
     pub path: PathBuf,
@@ -65,9 +65,9 @@ pub struct Desk {
     pub samples: Requests<Values>,
     /// Motions that the page wants.
     pub moves: Requests<Move>,
-    /// Folder whose files the model may name, beside those of its own.
+    /// Folder whose files the model may name, in addition to its own folder.
     pub root: Option<PathBuf>,
-    /// A folder for results, which ends with the session.
+    /// A folder for results, which is deleted with the session.
     pub folder: PathBuf,
     state: Mutex<State>,
     bell: Condvar,
@@ -79,7 +79,7 @@ pub struct Desk {
 }
 
 impl Desk {
-    /// With the texts of a model.
+    /// A desk with the texts of a model.
     pub fn new(texts: Texts, root: Option<PathBuf>, folder: PathBuf) -> Self {
         let (scene, current, finished, sources) = (None, None, None, Vec::new());
         let state = State { texts, changed: Instant::now(), scene, is_allowed: false, current, finished, sources };
@@ -97,7 +97,7 @@ impl Desk {
         }
     }
 
-    /// Between any two statements of its users the state is whole, also where one of them panics.
+    /// Locks the state, which is consistent between any two statements of its users, even after a panic.
     fn lock(&self) -> MutexGuard<'_, State> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -113,10 +113,10 @@ impl Desk {
         self.bell.notify_all();
     }
 
-    /// Changes a text. A permission holds for one text only.
+    /// Changes a text. A permission applies to one text only.
     ///
     /// # Errors
-    /// Where it is not open.
+    /// If it is not open.
     pub fn write(&self, path: &Path, text: String) -> Result<(), TextError> {
         let mut state = self.lock();
         state.texts.change(path, text)?;
@@ -125,10 +125,10 @@ impl Desk {
         Ok(())
     }
 
-    /// Takes a text from the disk again.
+    /// Reads a text from the disk again.
     ///
     /// # Errors
-    /// Where it cannot be read.
+    /// If it cannot be read.
     pub fn load(&self, path: &Path) -> Result<(), TextError> {
         let mut state = self.lock();
         state.texts.load(path)?;
@@ -137,10 +137,10 @@ impl Desk {
         Ok(())
     }
 
-    /// Takes the text of a file that another program has written.
+    /// Takes over the text of a file that another program has written.
     ///
     /// # Errors
-    /// Where it cannot be read.
+    /// If it cannot be read.
     pub fn follow(&self, path: &Path) -> Result<Followed, TextError> {
         let mut state = self.lock();
         let followed = state.texts.follow(path)?;
@@ -156,7 +156,7 @@ impl Desk {
         self.lock().sources.clone()
     }
 
-    /// Says from which files the model was read, and which of them are texts of the language.
+    /// Sets the files from which the model was read, and those of them that are texts of the language.
     pub fn was_read_from(&self, sources: Vec<PathBuf>, texts: Vec<PathBuf>) {
         let mut state = self.lock();
         state.texts.consists_of(texts);
@@ -177,7 +177,7 @@ impl Desk {
         self.changed(&mut state);
     }
 
-    /// Waits for a change behind that of a number, and until nothing is typed; `None` at the end.
+    /// Waits for a change other than `seen`, and for a pause in typing; `None` at the end.
     pub fn next_change(&self, seen: u64) -> Option<Reading> {
         let mut state = self.lock();
         while !self.has_ended() {
@@ -208,7 +208,7 @@ impl Desk {
         current
     }
 
-    /// Waits for a model behind that of a number; `None` at the end.
+    /// Waits for a model other than `seen`; `None` at the end.
     pub fn next_model(&self, seen: u64) -> Option<Arc<Current>> {
         let mut state = self.lock();
         while !self.has_ended() {
@@ -231,17 +231,17 @@ impl Desk {
         self.has_ended() || self.number.load(Ordering::Relaxed) != number
     }
 
-    /// Keeps the results of a study.
+    /// Stores the results of a study.
     pub fn finish(&self, finished: Finished) {
         self.lock().finished = Some(Arc::new(finished));
     }
 
-    /// The results of the latest study that is done.
+    /// The results of the latest finished study.
     pub fn finished(&self) -> Option<Arc<Finished>> {
         self.lock().finished.clone()
     }
 
-    /// Ends the workers, and tells the page.
+    /// Ends the workers, and notifies the page.
     pub fn end(&self) {
         self.is_ended.store(true, Ordering::Relaxed);
         self.bell.notify_all();

@@ -1,4 +1,4 @@
-//! Who is answered: requests to this machine's own address, from the studio's own page, with its token.
+//! Admission of requests: to this machine's own address, from the studio's own page, with its token.
 
 use data_encoding::HEXLOWER;
 
@@ -8,7 +8,7 @@ const BYTES: usize = 16;
 /// Reasons to refuse a request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Refusal {
-    /// The name of another host: a page elsewhere may have it point at this machine.
+    /// The name of another host: it may resolve to this machine for a page elsewhere.
     #[error("the studio answers at 127.0.0.1, localhost and [::1] only")]
     Host,
     /// Another page.
@@ -19,7 +19,7 @@ pub enum Refusal {
     Token,
 }
 
-/// The parts of a request that tell whose it is.
+/// The parts of a request that identify its caller.
 #[derive(Clone, Copy, Debug)]
 pub struct Caller<'r> {
     /// Path and query.
@@ -40,10 +40,10 @@ pub struct Guard {
 }
 
 impl Guard {
-    /// With a new token, at a port.
+    /// A guard with a new token, at a port.
     ///
     /// # Errors
-    /// Where the system has no random numbers.
+    /// If the system has no random numbers.
     pub fn new(port: u16) -> Result<Self, getrandom::Error> {
         let mut bytes = [0; BYTES];
         getrandom::fill(&mut bytes)?;
@@ -59,7 +59,7 @@ impl Guard {
     /// The part of an admitted request's address behind the token: path, and query or nothing.
     ///
     /// # Errors
-    /// Where it is not answered.
+    /// If the request is refused.
     pub fn admit<'r>(&self, caller: Caller<'r>) -> Result<(&'r str, &'r str), Refusal> {
         let is_own = |host: &str| self.hosts.iter().any(|own| own.eq_ignore_ascii_case(host));
         if !caller.host.is_some_and(is_own) {
@@ -77,7 +77,7 @@ impl Guard {
     }
 }
 
-/// Whether two texts are the same, in a time that does not tell where they differ.
+/// Whether two texts are equal, in a time that does not reveal where they differ.
 fn is_same(a: &[u8], b: &[u8]) -> bool {
     a.len() == b.len() && a.iter().zip(b).fold(0, |differences, (a, b)| differences | (a ^ b)) == 0
 }

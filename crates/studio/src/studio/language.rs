@@ -12,7 +12,7 @@ use lsp_server::{Connection, Message, Notification, Request, RequestId, Response
 use mbint_lsp::{attend, uri_of};
 use serde_json::{Value, json};
 
-/// Requests of the page that are passed on: they change nothing.
+/// Requests of the page that are passed on, since they change nothing.
 pub const METHODS: [&str; 7] = [
     "textDocument/completion",
     "textDocument/hover",
@@ -34,7 +34,7 @@ pub struct Language {
 }
 
 impl Language {
-    /// Starts the server, and gives the diagnostics of each file to `publish`: the file's address, and the list.
+    /// Starts the server, and passes the diagnostics of each file to `publish`: the file's address, and the list.
     pub fn start(root: Option<PathBuf>, publish: impl Fn(String, Value) + Send + 'static) -> Arc<Self> {
         let (own, connection) = Connection::memory();
         // It ends with the connection.
@@ -59,7 +59,7 @@ impl Language {
         let language = Self { connection, waiting, last: AtomicI32::new(0), version: AtomicI32::new(1) };
         let capabilities =
             json!({ "textDocument": { "completion": { "completionItem": { "snippetSupport": false } } } });
-        // Its capabilities are known here.
+        // Its capabilities are known already.
         let _ = language.ask("initialize", json!({ "processId": null, "rootUri": null, "capabilities": capabilities }));
         language.tell("initialized", json!({}));
         Arc::new(language)
@@ -68,7 +68,7 @@ impl Language {
     /// The answer to a request.
     ///
     /// # Errors
-    /// Those of the server, and where it does not answer.
+    /// Those of the server, and if it does not answer.
     pub fn ask(&self, method: &str, params: Value) -> Result<Value, String> {
         let id = RequestId::from(self.last.fetch_add(1, Ordering::Relaxed));
         let (answer, answered) = channel();
@@ -83,20 +83,20 @@ impl Language {
         }
     }
 
-    /// Says that a file is open, with a text.
+    /// Notifies the server that a file is open, with a text.
     pub fn open(&self, path: &Path, text: &str) {
         let version = self.version.fetch_add(1, Ordering::Relaxed);
         let document = json!({ "uri": uri(path), "languageId": "yaml", "version": version, "text": text });
         self.tell("textDocument/didOpen", json!({ "textDocument": document }));
     }
 
-    /// Says that files on the disk have changed.
+    /// Notifies the server that files on the disk have changed.
     pub fn saved(&self, path: &Path) {
         self.tell("textDocument/didSave", json!({ "textDocument": { "uri": uri(path) } }));
     }
 
     fn tell(&self, method: &str, params: Value) {
-        // A server that is gone hears nothing.
+        // Ignored if the server has ended.
         let _ = self.connection.sender.send(Message::Notification(Notification::new(method.to_owned(), params)));
     }
 }

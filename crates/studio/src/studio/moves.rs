@@ -1,4 +1,4 @@
-//! The mechanism's motions: nominal, at samples that the page wants, and by hand.
+//! The mechanism's motions: nominal, at requested samples, and by hand.
 
 use std::path::Path;
 
@@ -33,7 +33,7 @@ pub fn work(desk: &Desk) {
     }
 }
 
-/// Serves a model until another takes its place; the error is why nothing can be shown.
+/// Serves a model until another replaces it; the error is the reason why nothing can be shown.
 fn serve(desk: &Desk, current: &Current) -> Result<(), String> {
     let is_replaced = || desk.is_replaced(current.number);
     let beside = desk.texts(|texts| texts.model().parent().map(Path::to_owned)).unwrap_or_default();
@@ -56,14 +56,14 @@ fn serve(desk: &Desk, current: &Current) -> Result<(), String> {
     Ok(())
 }
 
-/// A motion as the report's scripts read it.
+/// A motion in the form of the report's scripts.
 fn motion(movable: &Movable, sample: &Sample, beside: &Path) -> Result<Value, String> {
     let mut found: Motion = movable.motion(sample, TUNING.numbers_of_motion).map_err(|error| error.to_string())?;
     read_meshes(&mut found.drawing, beside, MOST_TRIANGLES);
     let parts = ReportParts { description: None, texts: Vec::new(), motion: Ok(found), page: false };
     let json = motion_json(&parts, None).map_err(|error| error.to_string())?;
     let mut json: Value = serde_json::from_slice(&json).map_err(|error| error.to_string())?;
-    // The scripts draw it.
+    // The scripts draw it themselves.
     json["motion"].as_object_mut().map(|motion| motion.remove("picture"));
     Ok(json["motion"].take())
 }

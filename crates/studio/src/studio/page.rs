@@ -6,7 +6,7 @@ use crate::export::{REPORT_STYLE, report_module};
 const PAGE: &str = include_str!("page/studio.html");
 const STYLE: &str = include_str!("page/studio.css");
 
-/// Style of the text that is edited, which the playground has too.
+/// Style of the edited text, which the playground shares.
 const EDITOR_STYLE: &str = include_str!("page/editor.css");
 
 /// The page's modules, with their names.
@@ -22,7 +22,7 @@ const MODULES: [(&str, &str); 9] = [
     ("sliders.js", include_str!("page/sliders.js")),
 ];
 
-/// A file by its name; the page itself where that is empty.
+/// A file by its name; the page itself for an empty name.
 pub fn file(name: &str) -> Option<Answer> {
     match name {
         "" => Some(Answer::part("text/html; charset=utf-8", PAGE)),
@@ -47,7 +47,7 @@ mod tests {
                 let import = import.split('\'').next().unwrap();
                 assert!(file(import).is_some(), "{name} imports {import}");
             }
-            // The name of SVG's elements is no address.
+            // The namespace of SVG is not a request.
             assert!(!text.replace("http://www.w3.org/2000/svg", "").contains("http"), "{name}");
         }
         assert!(file("main.rs").is_none() && file("../studio.js").is_none());

@@ -3,7 +3,7 @@
 use crate::numerics::Sample;
 use crate::study::Grip;
 
-/// A sample that the page wants.
+/// A requested sample.
 pub struct Values {
     /// The model.
     pub number: u64,
@@ -15,11 +15,11 @@ pub struct Values {
 pub enum Move {
     /// Its motion at a sample: the model's number, and values of the uncertain parameters.
     Motion(u64, Sample),
-    /// A point of it at a place.
+    /// A point of it dragged to a position.
     Drag(Drag),
 }
 
-/// A point that is taken to a place.
+/// A point that is dragged to a position.
 pub struct Drag {
     /// The model.
     pub number: u64,
@@ -27,13 +27,13 @@ pub struct Drag {
     pub sample: Sample,
     /// The point.
     pub grip: Grip,
-    /// The place, m.
+    /// The position, m.
     pub place: [f64; 3],
-    /// Poses from which the hand begins; where it is, where there are none.
+    /// Poses from which the hand begins; without them, the present ones.
     pub from: Option<Vec<f64>>,
 }
 
-/// Why a question of another model has no answer.
+/// Error for a question of another model.
 pub fn replaced() -> String {
     "the model has changed meanwhile".to_owned()
 }

@@ -1,4 +1,4 @@
-//! The report of the latest study that is done, as `mbint run` writes it.
+//! The report of the latest finished study, as `mbint run` writes it.
 
 use std::fs;
 use std::path::Path;
@@ -10,7 +10,7 @@ use crate::results::Provenance;
 use crate::simulate::Interruption;
 use crate::study::{self, MotionOptions};
 
-/// The report, or that there is none yet.
+/// The report, or an error if there is none yet.
 pub fn answer(desk: &Desk) -> Answer {
     let Some(finished) = desk.finished() else {
         return Answer::error(404, "there is a report when the bounds are done");

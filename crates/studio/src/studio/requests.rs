@@ -1,4 +1,4 @@
-//! Questions of the page to a worker: of several of one kind that wait, the latest is answered.
+//! Questions of the page to a worker: only the latest of each kind is answered.
 
 use std::collections::VecDeque;
 use std::mem::discriminant;
@@ -8,7 +8,7 @@ use std::sync::{Condvar, Mutex, PoisonError};
 use super::tuning::TUNING;
 use serde_json::Value;
 
-/// A question, and where its answer goes.
+/// A question, and the sender of its answer.
 pub struct Asked<Q> {
     /// The question.
     pub question: Q,
@@ -16,14 +16,14 @@ pub struct Asked<Q> {
 }
 
 impl<Q> Asked<Q> {
-    /// Answers.
+    /// Sends the answer.
     pub fn answer(self, answer: Result<Value, String>) {
-        // A page that is gone does not listen.
+        // Ignored if the page does not wait any more.
         let _ = self.answer.send(answer);
     }
 }
 
-/// Questions that wait.
+/// Waiting questions.
 pub struct Requests<Q> {
     waiting: Mutex<VecDeque<Asked<Q>>>,
     bell: Condvar,
@@ -36,10 +36,10 @@ impl<Q> Default for Requests<Q> {
 }
 
 impl<Q> Requests<Q> {
-    /// Asks, and waits for the answer.
+    /// Asks a question, and waits for the answer.
     ///
     /// # Errors
-    /// Where the worker has none, or a later question of the same kind takes its place.
+    /// If the worker has none, or a later question of the same kind replaces this one.
     pub fn ask(&self, question: Q) -> Result<Value, String> {
         let (answer, answered) = channel();
         let mut waiting = self.waiting.lock().unwrap_or_else(PoisonError::into_inner);
@@ -50,7 +50,7 @@ impl<Q> Requests<Q> {
         answered.recv().unwrap_or_else(|_| Err("a later request took its place".to_owned()))
     }
 
-    /// The next question; `None` at an end.
+    /// Waits for the next question; `None` at an end.
     pub fn next(&self, is_ended: &dyn Fn() -> bool) -> Option<Asked<Q>> {
         let mut waiting = self.waiting.lock().unwrap_or_else(PoisonError::into_inner);
         while !is_ended() {

@@ -1,4 +1,4 @@
-//! The page's requests: each with its answer.
+//! The page's requests, with their answers.
 
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -17,7 +17,7 @@ use super::{page, report};
 use crate::numerics::Sample;
 use crate::study::{self, Grip};
 
-/// All that requests need.
+/// State that requests need.
 pub struct Routes {
     /// The shared state.
     pub desk: Arc<Desk>,
@@ -81,7 +81,7 @@ impl From<TextError> for Answer {
 }
 
 impl Routes {
-    /// The answer to a request behind the token: its path, its query, and its body.
+    /// The answer to a request, given by its path behind the token, its query, and its body.
     pub fn answer(&self, method: &str, path: &str, query: &str, body: &str) -> Answer {
         let answer = match (method, path) {
             ("GET", "events") => Ok(Answer::json(&self.desk.board.after(number(query)))),
@@ -120,7 +120,7 @@ impl Routes {
 
     fn text(&self, Written { path, text }: Written) -> Result<Answer, Answer> {
         self.desk.write(&path, text.clone())?;
-        // Another text of an open document is the same as a change of it.
+        // Opening a document again with another text is the same as a change of it.
         self.language.open(&path, &text);
         Ok(Answer::json(&json!({ "unsaved": self.desk.texts(|texts| texts.is_unsaved(&path)) })))
     }
@@ -149,7 +149,7 @@ impl Routes {
         Ok(Answer::json(&result))
     }
 
-    /// The sample of a request, where its values are those of the parameters of the current model.
+    /// The sample of a request, if its values fit the parameters of the current model.
     fn wanted(&self, wanted: &Wanted) -> Result<Sample, Answer> {
         let current = self.desk.current().filter(|current| current.number == wanted.number);
         let current = current.ok_or_else(|| Answer::error(409, &replaced()))?;
@@ -199,7 +199,7 @@ fn read<T: DeserializeOwned>(body: &str) -> Result<T, Answer> {
     serde_json::from_str(body).map_err(|error| Answer::error(400, &error.to_string()))
 }
 
-/// Of `after=12`; 0 where there is none.
+/// The number of `after=12`; 0 if absent.
 fn number(query: &str) -> u64 {
     query.strip_prefix("after=").and_then(|number| number.parse().ok()).unwrap_or(0)
 }

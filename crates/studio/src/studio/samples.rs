@@ -1,4 +1,4 @@
-//! Outputs over time at samples that the page wants: simulated, as `mbint sample` does it.
+//! Outputs over time at requested samples, simulated as by `mbint sample`.
 
 use std::sync::{Mutex, PoisonError};
 
@@ -16,7 +16,7 @@ pub fn work(desk: &Desk) {
     while let Some(current) = desk.next_model(seen) {
         seen = current.number;
         let is_replaced = || desk.is_replaced(seen);
-        // Not before it is asked for.
+        // Waits for the first request.
         let Some(first) = desk.samples.next(&is_replaced) else { continue };
         if first.question.number != seen {
             first.answer(Err(replaced()));
@@ -40,7 +40,7 @@ pub fn work(desk: &Desk) {
     }
 }
 
-/// Compiles a model once and simulates the samples that are asked for, until another model takes its place.
+/// Compiles a model once and simulates requested samples, until another model replaces it.
 fn serve(
     desk: &Desk,
     current: &Current,

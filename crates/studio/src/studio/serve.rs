@@ -21,21 +21,21 @@ use super::tuning::TUNING;
 use super::{bounds, moves, samples, watch};
 use crate::study;
 
-/// A session.
+/// Options of a session.
 pub struct Options<'o> {
     /// The model's file.
     pub model: &'o Path,
-    /// Folder whose files the model may name, beside those of its own.
+    /// Folder whose files the model may name, in addition to its own folder.
     pub root: Option<PathBuf>,
-    /// The port; one that is free where it is 0.
+    /// The port; 0 for any free one.
     pub port: u16,
-    /// Called with the address of the page, when it is served.
+    /// Called with the address of the page, once it is served.
     pub started: &'o mut dyn FnMut(&str),
-    /// Asked now and then whether to end.
+    /// Polled for the end of the session.
     pub is_ended: &'o dyn Fn() -> bool,
 }
 
-/// Why there is no session.
+/// Reasons why there is no session.
 #[derive(Debug, thiserror::Error)]
 pub enum StudioError {
     /// The model's file cannot be read.
@@ -58,14 +58,14 @@ pub enum StudioError {
 /// Serves the page of a model until the end.
 ///
 /// # Errors
-/// Where the file cannot be read, or the port cannot be listened at.
+/// If the file cannot be read, or the port cannot be listened at.
 pub fn serve(options: Options) -> Result<(), StudioError> {
     let Options { model, root, port, started, is_ended } = options;
     let path = std::path::absolute(model).map_err(StudioError::Path)?;
     let texts = Texts::new(path)?;
     let folder = tempfile::tempdir().map_err(StudioError::Folder)?;
     let failed = |error| StudioError::Port(port, error);
-    // Of this machine alone.
+    // On the loopback interface only.
     let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port)).map_err(failed)?;
     let address = listener.local_addr().map_err(failed)?;
     let guard = Guard::new(address.port())?;
@@ -79,7 +79,7 @@ pub fn serve(options: Options) -> Result<(), StudioError> {
     });
     for work in [bounds::work, moves::work, samples::work] {
         let desk = Arc::clone(&desk);
-        // They end with the desk, and at the latest with the program.
+        // They end with the desk, at the latest with the program.
         thread::spawn(move || work(&desk));
     }
     let (watched, listening) = (Arc::clone(&desk), Arc::clone(&language));
@@ -96,7 +96,7 @@ pub fn serve(options: Options) -> Result<(), StudioError> {
     Ok(())
 }
 
-/// Gives waiting pages the time to hear of the end.
+/// Wakes the listener, and gives waiting pages time to receive the end.
 fn settle(address: SocketAddr) {
     let _ = TcpStream::connect(address);
     thread::sleep(TUNING.between_looks_of_server);
@@ -105,19 +105,19 @@ fn settle(address: SocketAddr) {
 /// Answers each connection in a thread of its own, until the studio ends.
 fn listen(listener: &TcpListener, guard: &Arc<Guard>, routes: &Arc<Routes>) {
     let open = Arc::new(AtomicUsize::new(0));
-    // A connection that breaks is the other end's.
+    // Broken connections are skipped.
     for stream in listener.incoming().flatten() {
         if routes.desk.has_ended() {
             return;
         }
-        // Whoever opens many waits.
+        // Connections beyond the limit are closed.
         if open.load(Ordering::Relaxed) >= TUNING.connections {
             continue;
         }
         open.fetch_add(1, Ordering::Relaxed);
         let (open, guard, routes) = (Arc::clone(&open), Arc::clone(guard), Arc::clone(routes));
         thread::spawn(move || {
-            // One that cannot be read has its answer.
+            // `open` itself answers a head that cannot be read.
             if let Ok(connection) = Connection::open(stream) {
                 attend(&guard, &routes, connection);
             }

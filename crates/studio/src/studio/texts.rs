@@ -1,4 +1,4 @@
-//! The texts of a model's files: as they are on the disk, and as the page has them.
+//! The texts of a model's files: those on the disk, and those of the page.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -12,10 +12,10 @@ use crate::syntax::text_file::read_text;
 use crate::syntax::tuning::TUNING;
 use crate::syntax::within::OpenTexts;
 
-/// Why a text cannot be read, changed or saved.
+/// Reasons why a text cannot be read, changed or saved.
 #[derive(Debug, thiserror::Error)]
 pub enum TextError {
-    /// It is none of the model.
+    /// It does not belong to the model.
     #[error("`{0}` is no file of this model")]
     Foreign(String),
     /// Another program has written it.
@@ -34,26 +34,27 @@ pub enum TextError {
 /// Outcome of a change of a text's file.
 #[derive(Debug, PartialEq, Eq)]
 pub enum Followed {
-    /// The file holds the text that it held.
+    /// The file has the same text as before.
     Same,
-    /// It is no open text, but the model may depend on it.
+    /// It is not an open text, but the model may depend on it.
     Other,
-    /// The text is now this one.
+    /// The text has been replaced by this one.
     Loaded(String),
-    /// The page has changed it: it stays.
+    /// The page has changed it: its text stays.
     Kept,
 }
 
 /// A file that is open.
 struct Open {
-    /// As it was on the disk when it was read or written.
+    /// Text on the disk when it was last read or written.
     stored: String,
-    /// As the page has it, with `\n` at ends of lines.
+    /// Text of the page, with `
+    /// ` at ends of lines.
     text: String,
 }
 
 impl Open {
-    /// The text as it is to be on the disk: with the line ends that are there.
+    /// The text for the disk, with the line ends of the file.
     fn written(&self) -> String {
         if self.stored.contains("\r\n") { self.text.replace('\n', "\r\n") } else { self.text.clone() }
     }
@@ -63,16 +64,16 @@ impl Open {
 pub struct Texts {
     /// The model, by its full path.
     model: PathBuf,
-    /// Files of which it consists, as it was read last.
+    /// Files of the model when it was last read.
     named: BTreeSet<PathBuf>,
     open: BTreeMap<PathBuf, Open>,
 }
 
 impl Texts {
-    /// Of a model, by its full path.
+    /// The texts of a model, given by its full path.
     ///
     /// # Errors
-    /// Where it cannot be read.
+    /// If it cannot be read.
     pub fn new(model: PathBuf) -> Result<Self, TextError> {
         let mut texts = Self { named: BTreeSet::from([model.clone()]), model, open: BTreeMap::new() };
         let model = texts.model.clone();
@@ -85,7 +86,7 @@ impl Texts {
         &self.model
     }
 
-    /// Says of which files the model consists. One that is open stays so.
+    /// Sets the files of which the model consists. Open files stay in the list.
     pub fn consists_of(&mut self, files: impl IntoIterator<Item = PathBuf>) {
         self.named = files.into_iter().chain([self.model.clone()]).chain(self.open.keys().cloned()).collect();
     }
@@ -96,7 +97,7 @@ impl Texts {
         std::iter::once(&self.model).chain(others).cloned().collect()
     }
 
-    /// Whether a file is one of the model.
+    /// Whether a file belongs to the model.
     pub fn has(&self, path: &Path) -> bool {
         self.named.contains(path)
     }
@@ -106,10 +107,10 @@ impl Texts {
         self.open.contains_key(path)
     }
 
-    /// The text of a file of the model, from the disk where it is not open.
+    /// The text of a file of the model, from the disk if it is not open.
     ///
     /// # Errors
-    /// Where it is none of the model, or cannot be read.
+    /// If it does not belong to the model, or cannot be read.
     pub fn open(&mut self, path: &Path) -> Result<&str, TextError> {
         if !self.is_open(path) {
             self.load(path)?;
@@ -117,7 +118,7 @@ impl Texts {
         self.open.get(path).map(|own| own.text.as_str()).ok_or_else(|| TextError::Foreign(name(path)))
     }
 
-    /// Reads a file of the model again: the page's text is dropped.
+    /// Reads a file of the model again, and drops the page's text.
     ///
     /// # Errors
     /// As for [`open`](Self::open).
@@ -132,10 +133,10 @@ impl Texts {
         Ok(())
     }
 
-    /// Takes the text of a file that has changed, where the page has not changed it.
+    /// Takes over the text of a changed file, if the page has not changed it.
     ///
     /// # Errors
-    /// Where it cannot be read.
+    /// If it cannot be read.
     pub fn follow(&mut self, path: &Path) -> Result<Followed, TextError> {
         let Some(own) = self.open.get(path) else { return Ok(Followed::Other) };
         let there = read_text(path, TUNING.file_bytes);
@@ -153,17 +154,17 @@ impl Texts {
     /// Changes a text.
     ///
     /// # Errors
-    /// Where it is not open.
+    /// If it is not open.
     pub fn change(&mut self, path: &Path, text: String) -> Result<(), TextError> {
         let own = self.open.get_mut(path).ok_or_else(|| TextError::Foreign(name(path)))?;
         own.text = text;
         Ok(())
     }
 
-    /// Writes a text to its file, whole or not at all.
+    /// Writes a text to its file, completely or not at all.
     ///
     /// # Errors
-    /// Where it is not open, cannot be written, or another program has changed the file.
+    /// If it is not open, cannot be written, or another program has changed the file.
     pub fn save(&mut self, path: &Path) -> Result<(), TextError> {
         let own = self.open.get_mut(path).ok_or_else(|| TextError::Foreign(name(path)))?;
         let failed = |error| TextError::Unwritten(name(path), error);
@@ -172,7 +173,7 @@ impl Texts {
         if there != own.stored.as_bytes() && there != text.as_bytes() {
             return Err(TextError::Changed(name(path)));
         }
-        // A link stays one.
+        // A link stays a link.
         let full = path.canonicalize().map_err(failed)?;
         let mut file = NamedTempFile::new_in(full.parent().unwrap_or(Path::new("."))).map_err(failed)?;
         file.write_all(text.as_bytes()).map_err(failed)?;
@@ -183,7 +184,7 @@ impl Texts {
         Ok(())
     }
 
-    /// Whether a text is another than that on the disk.
+    /// Whether a text differs from that on the disk.
     pub fn is_unsaved(&self, path: &Path) -> bool {
         self.open.get(path).is_some_and(|own| own.written() != own.stored)
     }

@@ -1,4 +1,4 @@
-//! Files that another program changes: a text that the page has not changed follows the disk, another stays.
+//! Files that another program changes: a text that the page has not changed follows the disk, others stay.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -13,7 +13,7 @@ use super::language::Language;
 use super::texts::Followed;
 use super::tuning::TUNING;
 
-/// Tells whether a file is as it was: when it was written, and its length; `None` where there is none.
+/// Identifies the state of a file: time of its last change, and length; `None` without a file.
 type Mark = Option<(SystemTime, u64)>;
 
 fn mark(path: &Path) -> Mark {
@@ -21,7 +21,7 @@ fn mark(path: &Path) -> Mark {
     Some((data.modified().ok()?, data.len()))
 }
 
-/// Looks at the model's files until the end.
+/// Polls the model's files until the end.
 pub fn work(desk: &Desk, language: &Language) {
     let mut marks: BTreeMap<PathBuf, Mark> = BTreeMap::new();
     let mut notes: BTreeMap<String, Value> = BTreeMap::new();
@@ -32,7 +32,7 @@ pub fn work(desk: &Desk, language: &Language) {
             let now = mark(&path);
             let is_as_it_was = match marks.insert(path.clone(), now) {
                 Some(before) => before == now,
-                // An open text may be older than the first look at its file.
+                // An open text may be older than the first check of its file.
                 None => !desk.texts(|texts| texts.is_open(&path)),
             };
             if is_as_it_was {

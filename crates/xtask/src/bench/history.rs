@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-/// Columns that say what a row is of.
+/// Columns that identify a row.
 pub const OF_ROW: [&str; 5] = ["version", "date", "commit", "processor", "compiler"];
 
 /// Beginnings of columns: instructions of a step, and its time in turns of the reference loop.
@@ -43,7 +43,7 @@ impl History {
         Ok(Self { columns, rows })
     }
 
-    /// Adds a row in the order of dates, in place of one of the same version. Columns that are new come last.
+    /// Adds a row in the order of dates, or replaces one of the same version. New columns come last.
     pub fn add(&mut self, row: Row) {
         if self.columns.is_empty() {
             self.columns = OF_ROW.map(str::to_owned).to_vec();
@@ -65,19 +65,19 @@ impl History {
     }
 }
 
-/// The numbers of mbint in a row's columns that begin so, by the rest of the columns' names.
+/// The numbers of mbint in a row's columns with this beginning, by the rest of the columns' names.
 pub fn numbers<'r>(row: &'r Row, beginning: &'static str) -> BTreeMap<&'r str, f64> {
     let own = row.iter().filter_map(move |(column, cell)| Some((column.strip_prefix(beginning)?, cell.parse().ok()?)));
     own.filter(|(name, _)| !name.starts_with(EXUDYN)).collect()
 }
 
-/// Times of peers in a row, by their columns without the beginning.
+/// Times of peers in a row, by their columns' names without the beginning.
 pub fn peers(row: &Row) -> Vec<(&str, f64)> {
     let own = row.iter().filter_map(|(column, cell)| Some((column.strip_prefix(TIME)?, cell.parse().ok()?)));
     own.filter(|(name, _)| name.starts_with(EXUDYN)).collect()
 }
 
-/// Geometric mean of the ratios of a row's numbers to another's, over what both have.
+/// Geometric mean of the ratios of a row's numbers to another's, over those that both have.
 pub fn mean_ratio(row: &Row, to: &Row, beginning: &'static str) -> Option<f64> {
     let (own, to) = (numbers(row, beginning), numbers(to, beginning));
     let ratios: Vec<f64> = own.iter().filter_map(|(name, value)| Some((value / to.get(name)?).ln())).collect();

@@ -1,7 +1,7 @@
 //! `cargo xtask bench`: adds a row to the performance record, `docs/performance/record.csv`, and writes its page and
 //! drawing.
 //!
-//! - `--at COMMIT` adds a row of an older commit: instructions only, from the page that its gate held;
+//! - `--at COMMIT` adds a row of an older commit: instructions only, from the page of that commit;
 //! - `--pages` measures nothing, and writes page and drawing again.
 
 mod history;
@@ -15,7 +15,7 @@ use serde_json::Value;
 use crate::machine;
 use history::{EXUDYN, History, INSTRUCTIONS, Row, TIME, instructions};
 
-/// Table, page and drawing stand here.
+/// Folder of table, page and drawing.
 const FOLDER: &str = "docs/performance";
 const TABLE: &str = "record.csv";
 const PAGE_OF_INSTRUCTIONS: &str = "docs/reference/instructions.md";
@@ -40,7 +40,7 @@ pub fn run(root: &Path, arguments: &[String]) -> ExitCode {
 fn history(root: &Path) -> Result<History, String> {
     match std::fs::read_to_string(root.join(FOLDER).join(TABLE)) {
         Ok(text) => History::read(&text).map_err(|error| format!("{FOLDER}/{TABLE}: {error}")),
-        // The first row makes the table.
+        // There is no table before the first row.
         Err(_) => Ok(History::default()),
     }
 }
@@ -100,7 +100,7 @@ fn row_of_now(root: &Path) -> Result<Row, String> {
     Ok(row)
 }
 
-/// A line as those of `benches/record.rs`, of a step of the slider crank by Exudyn where `benches/peers/run` has
+/// A line like those of `benches/record.rs`, of a step of the slider crank by Exudyn, if `benches/peers/run` has
 /// installed it: 2000 steps of generalised alpha.
 fn exudyn(root: &Path) -> Result<Option<String>, String> {
     let python = root.join("target/exudyn/bin/python");

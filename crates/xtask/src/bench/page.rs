@@ -24,7 +24,7 @@ fn cell<'r>(row: &'r Row, column: &str) -> &'r str {
     row.get(column).map_or("", String::as_str)
 }
 
-/// Ratios of every row to the first one that has such numbers, as geometric means over models.
+/// Ratios of every row to the first one with such numbers, as geometric means over models.
 fn ratios(history: &History, beginning: &'static str) -> Vec<Option<f64>> {
     let first = history.rows.iter().find(|row| !numbers(row, beginning).is_empty());
     history.rows.iter().map(|row| mean_ratio(row, first?, beginning)).collect()
@@ -81,13 +81,13 @@ fn text(history: &History) -> String {
 const SIZE: [f64; 2] = [760.0, 300.0];
 const MARGIN: [f64; 2] = [70.0, 45.0];
 
-/// Curves: their numbers, names and colours, which differ for eyes that see no red or no green.
+/// Curves: their numbers, names and colours, which the colour-blind distinguish.
 const CURVES: [(&str, &str, &str); 2] = [(INSTRUCTIONS, "instructions", "#0072b2"), (TIME, "times", "#d55e00")];
 
 fn drawing(history: &History) -> String {
     let curves = CURVES.map(|(beginning, ..)| ratios(history, beginning));
     let values = || curves.iter().flatten().flatten().copied();
-    // Room for a tenth beside the least and the greatest.
+    // Room for a tenth below the least and above the greatest.
     let [low, high] = [values().fold(1.0, f64::min) - 0.1, values().fold(1.0, f64::max) + 0.1];
     let [width, height] = [SIZE[0] - 2.0 * MARGIN[0], SIZE[1] - 2.0 * MARGIN[1]];
     let intervals = (history.rows.len().max(2) - 1) as f64;

@@ -1,6 +1,6 @@
 //! The claims of the report: words, and the sources of their figures.
 
-/// A claim, in the words of a numbered section.
+/// A claim, worded as a numbered section.
 pub struct Claim {
     /// Name of its page, and of its measurements.
     pub name: &'static str,
@@ -15,20 +15,20 @@ pub struct Claim {
     pub table: Table,
 }
 
-/// How cases are shown.
+/// Form of the table of cases.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Table {
-    /// A row a case.
+    /// A row for each case.
     Cases,
-    /// Least and greatest of every figure: of many cases that stand elsewhere, or in the file of measurements.
+    /// Least and greatest of every figure, for many cases listed elsewhere or in the file of measurements.
     Extremes,
 }
 
-/// Where figures come from.
+/// Sources of figures.
 pub enum Source {
-    /// Tests of a binary whose names have `filter` in them; they write their cases.
+    /// Tests of a binary whose names contain `filter`; they write their cases.
     Tests { binary: &'static str, filter: &'static str, when: When },
-    /// The same without those that take long; each module is a case.
+    /// The same tests without those that take long; each module is a case.
     Modules { binary: &'static str, filter: &'static str, when: When },
     /// `mbint verify` of the shipped models.
     VerifiedModels,
@@ -38,14 +38,14 @@ pub enum Source {
     Peers,
 }
 
-/// Which runs have a source.
+/// Runs that measure a source.
 #[derive(Clone, Copy, PartialEq)]
 pub enum When {
     Always,
-    /// Instead of what a whole run has.
+    /// Replaces the source of a whole run.
     Quick,
     Whole,
-    /// Of a whole run, where `MBINT_REFERENCE` names the folder of third-party results.
+    /// A whole run, if `MBINT_REFERENCE` names the folder of third-party results.
     WithReference,
 }
 

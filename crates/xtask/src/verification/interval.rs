@@ -1,10 +1,10 @@
-//! The interval of confidence of a share.
+//! The confidence interval of a share.
 
 /// Confidence of the intervals.
 pub const CONFIDENCE: f64 = 0.95;
 
-/// Clopper and Pearson's interval of the share of which `count` of `of` trials are seen: the shares that neither tail
-/// of the binomial law refutes at half of the level. It holds the true share in at least that many of all samples,
+/// Clopper and Pearson's interval of the share with `count` successes in `of` trials: the shares that neither tail of
+/// the binomial law refutes at half of the level. It contains the true share in at least that share of all samples,
 /// however small they are.
 pub fn clopper_pearson(count: u64, of: u64) -> [f64; 2] {
     let half = 0.5 * (1.0 - CONFIDENCE);
@@ -24,7 +24,7 @@ fn solve(holds: impl Fn(f64) -> bool) -> f64 {
     0.5 * (lower + upper)
 }
 
-/// P(X ≤ count) of a binomial law. Terms are sums of logarithms, as powers of many trials are too small for numbers.
+/// P(X ≤ count) of a binomial law. Terms are sums of logarithms, since powers of many trials underflow.
 fn at_most(count: u64, of: u64, share: f64) -> f64 {
     let [success, failure] = [share.ln(), (-share).ln_1p()];
     let mut binomial = 0.0;

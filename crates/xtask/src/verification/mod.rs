@@ -1,13 +1,13 @@
 //! `cargo xtask verification`: measures the claims of the verification report, and writes its pages.
 //!
-//! - `--quick` leaves out all that takes longer than seconds;
+//! - `--quick` omits all that takes longer than seconds;
 //! - `--dev` measures a build with debug assertions instead of a release;
 //! - `--draws N` of the falsifier (5000);
 //! - `--into FOLDER` instead of `docs/verification`;
-//! - `--only CLAIM,…` measures some claims, and leaves FOLDER's others as they were measured;
+//! - `--only CLAIM,…` measures some claims, and leaves FOLDER's other measurements unchanged;
 //! - `--pages` measures nothing, and writes the pages of FOLDER's `measured.json` again.
 //!
-//! The exit status is 1 where a claim fails, 2 where nothing could be measured.
+//! The exit status is 1 if a claim fails, 2 if nothing could be measured.
 
 mod claims;
 mod interval;
@@ -40,7 +40,7 @@ struct Options {
     release: bool,
     draws: u64,
     into: PathBuf,
-    /// Names of claims; all where there are none.
+    /// Names of claims; all claims if empty.
     only: Vec<String>,
     pages_only: bool,
 }
@@ -67,7 +67,7 @@ impl Options {
         Ok(options)
     }
 
-    /// The command with these options, as far as they matter to measurements.
+    /// The command with these options, as far as they affect measurements.
     fn command(&self) -> String {
         let options = [self.quick.then_some(" --quick"), (!self.release).then_some(" --dev")];
         let draws = if self.quick { String::new() } else { format!(" --draws {}", self.draws) };
@@ -195,7 +195,7 @@ fn measure_claim(root: &Path, built: &Built, claim: &Claim, options: &Options) -
     (runs, cases)
 }
 
-/// The folder of third-party results, where there is one.
+/// The folder of third-party results, if it exists.
 fn third_party(root: &Path) -> Option<PathBuf> {
     let named = std::env::var_os("MBINT_REFERENCE").map(PathBuf::from);
     named.or_else(|| root.join("../shared/reference").canonicalize().ok()).filter(|folder| folder.is_dir())

@@ -7,7 +7,7 @@ use super::interval::{CONFIDENCE, clopper_pearson};
 use super::record::{Case, Figure, Record, Section};
 use super::verdict::Verdict;
 
-/// Section of missed bands, which is no claim.
+/// Section of missed bands, which is not a claim.
 pub const MISSES: &str = "misses";
 
 /// A page: the name of its file, and its text.
@@ -22,7 +22,7 @@ pub fn all(record: &Record) -> Vec<Page> {
     pages
 }
 
-/// The section of a claim; an empty one where nothing ran.
+/// The section of a claim; `None` if nothing ran.
 fn of<'r>(record: &'r Record, claim: &str) -> Option<&'r Section> {
     record.sections.iter().find(|section| section.claim == claim)
 }
@@ -74,7 +74,7 @@ fn summary(record: &Record) -> String {
     page
 }
 
-/// Why writing cannot fail.
+/// Reason why writing cannot fail.
 const STRINGS: &str = "a string can be written";
 
 fn section(number: usize, claim: &Claim, record: &Record) -> String {
@@ -248,7 +248,7 @@ fn limit(figure: &Figure) -> Option<String> {
     }
 }
 
-/// Whole numbers as they are, others to three digits, large ones to four.
+/// Integers unchanged, others to three digits, large ones to four.
 fn number(value: f64) -> String {
     let size = value.abs();
     if value.fract() == 0.0 && size < 1e9 {

@@ -1,4 +1,4 @@
-//! Other programs, where they are installed: their versions, and whether they still compute their recorded motions.
+//! Other programs, if they are installed: their versions, and whether they still compute their recorded motions.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -13,11 +13,11 @@ const PEERS: [(&str, &str); 3] = [("mujoco", "MuJoCo"), ("pin", "Pinocchio"), ("
 /// Recorded robots without commands to actuators.
 const ROBOTS: [&str; 4] = ["ball_and_free", "linkage", "spatial_arm", "welded"];
 
-/// Times of the slider crank's reference, s, at which Exudyn is asked; it runs anew for each.
+/// Times of the slider crank's reference, s, at which Exudyn is compared; it runs anew for each.
 const TIMES: [f64; 4] = [0.5, 1.0, 1.5, 2.0];
 
-/// Which peers are installed, in the environments of `benches/peers/run` or beside it. A whole run lets them compute
-/// again.
+/// The versions of installed peers, in the environments of `benches/peers/run` or outside of them. A whole run lets
+/// them compute again.
 pub fn peers(root: &Path, claim: &str, quick: bool) -> (Run, Vec<Case>) {
     let pinned = std::fs::read_to_string(root.join("benches/peers/run")).unwrap_or_default();
     let pythons = ["target/exudyn/bin/python", "target/robots/bin/python"].map(|python| root.join(python));
@@ -103,12 +103,12 @@ fn slider_crank_by_exudyn(root: &Path, python: &Path) -> Result<Vec<Case>, Strin
     }])
 }
 
-/// The mini examples that Exudyn computes, against their recorded values: the largest difference, as a share.
+/// The mini examples of Exudyn against their recorded values: the largest difference, as a share.
 fn mini_examples_by_exudyn(root: &Path, python: &Path) -> Result<Vec<Case>, String> {
     let file = "tests/peers/exudyn.csv";
     let table = std::fs::read_to_string(root.join(file)).map_err(|error| format!("{file}: {error}"))?;
     let printed = output(root, python, &["-W", "ignore", "tests/peers/in_exudyn.py"])?;
-    // Its static solver prints before.
+    // Its static solver prints text before.
     let computed = printed.find('{').map_or("", |first| &printed[first..]);
     let computed: Value = serde_json::from_str(computed).map_err(|error| error.to_string())?;
     let mut worst = 0.0_f64;
@@ -116,7 +116,7 @@ fn mini_examples_by_exudyn(root: &Path, python: &Path) -> Result<Vec<Case>, Stri
         let cells: Vec<&str> = row.splitn(6, ',').collect();
         let [recorded, again] = [cells[4].parse().unwrap_or(f64::NAN), computed[cells[0]].as_f64().unwrap_or(f64::NAN)];
         let apart = (again / recorded - 1.0).abs();
-        // A NaN stays.
+        // NaN persists.
         worst = if worst.is_nan() || apart <= worst { worst } else { apart };
     }
     Ok(vec![Case {
@@ -133,14 +133,14 @@ fn rows(text: &str) -> impl Iterator<Item = Vec<f64>> {
     text.lines().filter(|line| !line.starts_with('#')).skip(1).map(move |line| line.split(',').map(number).collect())
 }
 
-/// Largest difference of two tables; NaN where they are not of one size, or a cell is no number.
+/// Largest difference of two tables; NaN if their sizes differ, or a cell is not a number.
 fn apart(one: &str, other: &str) -> f64 {
     let [one, other] = [one, other].map(|text| rows(text).collect::<Vec<_>>());
     if one.iter().map(Vec::len).ne(other.iter().map(Vec::len)) || one.is_empty() {
         return f64::NAN;
     }
     let differences = one.iter().flatten().zip(other.iter().flatten()).map(|(one, other)| (one - other).abs());
-    // A NaN stays.
+    // NaN persists.
     differences.fold(0.0, |largest: f64, own| if largest.is_nan() || own <= largest { largest } else { own })
 }
 

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// All that a run measured, and on what.
+/// All measurements of a run, and its circumstances.
 #[derive(Clone, Debug, Default, Deserialize, PartialEq, Serialize)]
 pub struct Record {
     pub on: Circumstances,
@@ -14,17 +14,17 @@ pub struct Record {
 #[derive(Clone, Debug, Default, Deserialize, PartialEq, Serialize)]
 pub struct Circumstances {
     pub version: String,
-    /// Hash of the commit; `+` after it where files differed from it.
+    /// Hash of the commit, followed by `+` if files differed from it.
     pub commit: String,
     /// Day of the run, YYYY-MM-DD, UTC.
     pub date: String,
-    /// `release`, or `dev` of a build with debug assertions.
+    /// `release`, or `dev` for a build with debug assertions.
     pub profile: String,
     pub compiler: String,
     pub processor: String,
     /// The command that measured.
     pub command: String,
-    /// A quick run leaves out all that takes long.
+    /// Whether the run omits all that takes long.
     pub quick: bool,
 }
 
@@ -33,7 +33,7 @@ pub struct Circumstances {
 pub struct Section {
     /// Name of the claim.
     pub claim: String,
-    /// Where it was measured, if by another run than the others.
+    /// Circumstances of its measurement, if by another run than the others.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub apart: Option<Circumstances>,
     pub runs: Vec<Run>,
@@ -41,7 +41,7 @@ pub struct Section {
 }
 
 impl Record {
-    /// With the sections of another run in place of its own.
+    /// Replaces its own sections by those of another run.
     pub fn with(mut self, other: Self) -> Self {
         for section in other.sections {
             let section = Section { apart: Some(other.on.clone()), ..section };
@@ -61,10 +61,10 @@ pub struct Run {
     /// Tests that passed and failed, for a run of tests.
     pub passed: usize,
     pub failed: usize,
-    /// Why it did not run, or did not end well.
+    /// Reason why it did not run, or did not end well.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub error: Option<String>,
-    /// Why it was left out.
+    /// Reason why it was omitted.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub left_out: Option<String>,
 }
@@ -74,21 +74,21 @@ pub struct Run {
 pub struct Case {
     pub claim: String,
     pub case: String,
-    /// Where expected values come from.
+    /// Source of expected values.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub source: Option<String>,
     #[serde(default)]
     pub figures: Vec<Figure>,
-    /// Why the claim does not cover the case.
+    /// Reason why the claim does not cover the case.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub exception: Option<String>,
 }
 
-/// A number, words, or a share, with the limits that it keeps.
+/// A number, words, or a share, with its limits.
 #[derive(Clone, Debug, Default, Deserialize, PartialEq, Serialize)]
 pub struct Figure {
     pub name: String,
-    /// None of a number that is not finite.
+    /// `None` for a number that is not finite.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub value: Option<f64>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -97,7 +97,7 @@ pub struct Figure {
     pub low: Option<f64>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub high: Option<f64>,
-    /// Of a share: `count` of `of` independent trials.
+    /// For a share: `count` of `of` independent trials.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub count: Option<u64>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -117,7 +117,7 @@ impl Figure {
     }
 }
 
-/// Cases from lines of JSON; the error says which line is none.
+/// Cases from lines of JSON; the error names an invalid line.
 pub fn cases(text: &str) -> Result<Vec<Case>, String> {
     let numbered = text.lines().enumerate().filter(|(_, line)| !line.is_empty());
     let read = |(number, line): (usize, &str)| {

@@ -1,4 +1,4 @@
-//! Runs the program on the shipped models, and asks which other programs are installed.
+//! Runs the program on the shipped models.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -28,7 +28,7 @@ struct Formulation {
 
 #[derive(Deserialize)]
 struct Derivatives {
-    /// None of a number that is not finite.
+    /// `None` for a number that is not finite.
     difference: Option<f64>,
 }
 
@@ -67,7 +67,7 @@ fn name(file: &Path) -> String {
     file.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }
 
-/// A case of a claim for every model, by a command on it.
+/// A case of a claim for every model, by a command applied to it.
 fn of_models(
     root: &Path,
     claim: &str,
@@ -100,7 +100,7 @@ pub fn verified_models(root: &Path, program: &Path, claim: &str, quick: bool) ->
     })
 }
 
-/// The case of an answer of `mbint verify`; the error says why there is none.
+/// The case of an answer of `mbint verify`; the error gives the reason if there is none.
 fn verified(output: &Output) -> Result<Case, String> {
     let said = String::from_utf8_lossy(&output.stderr);
     if said.contains("takes no steps") {
@@ -120,7 +120,7 @@ fn verified(output: &Output) -> Result<Case, String> {
         let name = name.split(", ").next().unwrap_or(name);
         let lowest = all.iter().filter_map(|own| own.order).reduce(f64::min);
         let theory = all.iter().map(|own| own.theory).fold(0.0, f64::max);
-        // Where the explicit method's errors are rounding's early, the program decides.
+        // Rounding dominates errors of the explicit method early; there the program decides.
         let low = if theory > 4.0 { 4.0 } else { 0.95 * theory };
         case.figures.push(match lowest {
             _ if !all.iter().all(|own| own.is_verified) => {
@@ -157,13 +157,13 @@ fn worse(a: f64, b: f64) -> f64 {
     if a >= b || a.is_nan() { a } else { b }
 }
 
-/// What changes from run to run, but must not change results.
+/// Conditions that vary from run to run, but must not change results.
 const OTHERWISE: [(&str, &[&str], Option<&str>); 2] = [
     ("one thread", &["--threads", "1"], None),
     ("no fused operations", &[], Some("glibc.cpu.hwcaps=-FMA,-FMA4,-AVX2,-AVX512F")),
 ];
 
-/// `mbint run` of every model, again and again: how many files differ.
+/// `mbint run` of every model, under each condition: the number of files that differ.
 pub fn same_bytes(root: &Path, program: &Path, claim: &str, quick: bool) -> (Run, Vec<Case>) {
     of_models(root, claim, quick, "mbint run MODEL --quiet --yes --no-report --output FOLDER", |file| {
         Ok(Case { figures: compared(program, file)?, ..Case::default() })
@@ -173,7 +173,7 @@ pub fn same_bytes(root: &Path, program: &Path, claim: &str, quick: bool) -> (Run
 fn compared(program: &Path, model: &Path) -> Result<Vec<Figure>, String> {
     let folder = std::env::temp_dir().join(format!("mbint-bytes-{}", std::process::id()));
     let run = |arguments: &[&str], tunables: Option<&str>| -> Result<BTreeMap<PathBuf, Vec<u8>>, String> {
-        // Left by the run before.
+        // Files of the previous run.
         let _ = std::fs::remove_dir_all(&folder);
         let mut command = Command::new(program);
         command
@@ -184,7 +184,7 @@ fn compared(program: &Path, model: &Path) -> Result<Vec<Figure>, String> {
             .args(arguments);
         command.envs(tunables.map(|tunables| ("GLIBC_TUNABLES", tunables)));
         let output = command.output().map_err(|error| error.to_string())?;
-        // Rows that no method resolves, and requirements that are violated, are results too.
+        // Unresolved rows, and violated requirements, are results too.
         match output.status.code() {
             Some(0 | 3 | 4) => Ok(contents(&folder)),
             _ => Err(format!("{}: {}", output.status, String::from_utf8_lossy(&output.stderr).trim())),

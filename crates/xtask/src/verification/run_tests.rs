@@ -8,7 +8,7 @@ use serde_json::Value;
 
 use super::record::{Case, Figure, Run, cases};
 
-/// Test binaries that sources name.
+/// Test binaries named by sources.
 const BINARIES: [&str; 5] = ["elements", "models", "program", "falsify", "fuzz"];
 
 /// Built tests, and the program that they test.
@@ -18,7 +18,7 @@ pub struct Built {
 }
 
 impl Built {
-    /// Builds tests and program; cargo tells where they are. An error names the missing part.
+    /// Builds tests and program, whose paths cargo reports. An error names the missing part.
     pub fn new(root: &Path, release: bool) -> Result<Self, String> {
         let mut cargo = Command::new("cargo");
         cargo.args(["test", "--locked", "--no-run", "--message-format=json-render-diagnostics"]);
@@ -39,13 +39,13 @@ impl Built {
         }
     }
 
-    /// Runs the tests whose names have `filter` in them, with those that take long. Their cases may be of any claim.
+    /// Runs the tests whose names contain `filter`, including those that take long. Their cases may be of any claim.
     pub fn run(&self, root: &Path, binary: &str, filter: &str, environment: &[(&str, String)]) -> (Run, Vec<Case>) {
         let (run, cases, _) = self.measured(root, binary, &[filter, "--include-ignored"], environment);
         (run, cases)
     }
 
-    /// Runs the tests that `cargo test` runs; every module of theirs is a case of a claim.
+    /// Runs the tests of a plain `cargo test`; every module is a case of a claim.
     pub fn run_modules(&self, root: &Path, claim: &str, binary: &str, filter: &str) -> (Run, Vec<Case>) {
         let (run, mut cases, outcomes) = self.measured(root, binary, &[filter], &[]);
         let mut modules: BTreeMap<&str, [usize; 2]> = BTreeMap::new();
@@ -75,11 +75,11 @@ impl Built {
         let command = format!("cargo test --test {binary} -- {}", arguments.join(" "));
         let mut run = Run { command, ..Run::default() };
         let lines = std::env::temp_dir().join(format!("mbint-measured-{}.jsonl", std::process::id()));
-        // Left by a run that ended early.
+        // Lines of a run that ended early.
         let _ = std::fs::remove_file(&lines);
         let mut tests = Command::new(&self.tests[binary]);
         tests.args(arguments).current_dir(root).env("MBINT_MEASURED", &lines);
-        // Draws of other runs are not this one's.
+        // Without the draws of other runs.
         tests.env_remove("MBINT_FALSIFY_RECORD").envs(environment.iter().map(|(name, value)| (name, value)));
         let output = match tests.output() {
             Ok(output) => output,
@@ -118,7 +118,7 @@ fn executables(messages: &str) -> BTreeMap<String, PathBuf> {
     messages.lines().filter_map(read).collect()
 }
 
-/// Tests and whether they passed, from libtest's lines; ignored ones do not count.
+/// Tests and their success, from libtest's lines; ignored ones do not count.
 fn outcomes(printed: &str) -> Vec<(String, bool)> {
     let read = |line: &str| {
         let (name, outcome) = line.strip_prefix("test ")?.rsplit_once(" ... ")?;

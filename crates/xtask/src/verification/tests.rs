@@ -48,7 +48,7 @@ fn a_claim_that_fails_is_in_the_summary_and_in_the_exit_status() {
     let summary = page(&record, "index.md");
     assert_eq!(summary.matches("**fails**").count(), 1, "{summary}");
     assert!(summary.contains("](textbook.md) | code verification | 1 | 0 | **fails** |"), "{summary}");
-    // A command that did not end well fails its claim too, and says why.
+    // A command that did not end well fails its claim too, with the reason.
     let mut record = holding();
     record.sections[0].runs[0].error = Some("ended with\nsignal 9".to_owned());
     assert!(!is_success(&record));
@@ -82,7 +82,7 @@ fn exceptions_and_shares_stand_with_their_reasons_and_intervals() {
     assert!(falsifier.contains("| 1 of 29: 0.09 to 17.76 % |") && falsifier.contains("95 % confidence"), "{falsifier}");
 }
 
-/// Nobody writes a figure by hand: the committed pages are those of the committed measurements.
+/// No figure is written by hand: the committed pages are those of the committed measurements.
 #[test]
 fn committed_pages_are_those_of_the_measurements() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/verification");

@@ -1,18 +1,18 @@
-//! Whether figures keep their limits: of a figure, of a case, of a section, of all.
+//! Verdicts on figures and their limits: of a figure, of a case, of a section, of all.
 
 use super::interval::clopper_pearson;
 use super::record::{Case, Figure, Section};
 
-/// The better ones first: of several, the last counts.
+/// Ordered from the best: the worst of several counts.
 #[derive(Clone, Copy, Debug, Eq, Ord, PartialEq, PartialOrd)]
 pub enum Verdict {
-    /// Nothing in it has a limit.
+    /// No figure of it has a limit.
     Recorded,
     Holds,
-    /// The claim does not cover the case, and says why.
+    /// The claim does not cover the case, for a stated reason.
     Excepted,
     NotMeasured,
-    /// The interval of confidence has the limit in it.
+    /// The confidence interval contains the limit.
     Undecided,
     Fails,
 }
@@ -63,8 +63,8 @@ impl Case {
 }
 
 impl Section {
-    /// Cases that are excepted do not count, unless there are no others. A section whose commands were all left out is
-    /// not measured; one whose commands ran and measured nothing fails, since a claim without a measurement is none.
+    /// Excepted cases do not count, unless there are no others. A section whose commands were all omitted is not
+    /// measured; one whose commands ran and measured nothing fails, since a claim needs a measurement.
     pub fn verdict(&self) -> Verdict {
         let is_wrong = |run: &&super::record::Run| run.error.is_some() || run.failed > 0;
         if self.runs.iter().any(|run| is_wrong(&run)) {
@@ -125,7 +125,7 @@ mod tests {
         assert_eq!(of(run(None, None)), Verdict::Fails);
         assert_eq!(of(run(Some("killed"), None)), Verdict::Fails);
         assert_eq!(of(run(None, Some("not installed"))), Verdict::NotMeasured);
-        // All cases excepted, and a case that holds in a run of which a test failed.
+        // All cases excepted, and a case that holds in a run with a failed test.
         assert_eq!(section(Vec::new(), Some("not smooth")).verdict(), Verdict::Fails);
         let mut failed = section(vec![Figure::number("", 1.0, None, Some(2.0))], None);
         failed.runs[0].failed = 1;
