@@ -1,15 +1,14 @@
-//! Constants of a room that could be other numbers: limits, defaults and thresholds, each with its reason and with the
-//! results that move if it changes. A room has them in one struct, `Tuning`; `mbint explain --tuning` lists them
-//! (decision 0157).
+//! Adjustable constants of a room: limits, defaults and thresholds, each with its reason and with the results that move
+//! if it changes. A room has them in one struct, `Tuning`; `mbint explain --tuning` lists them (decision 0157).
 
 /// A constant, for people.
 #[derive(Clone, Debug)]
 pub struct Constant {
-    /// The room that has it.
+    /// The room to which it belongs.
     pub room: &'static str,
     /// Its name.
     pub name: &'static str,
-    /// As the source has it.
+    /// Its value as written in the source.
     pub value: &'static str,
     /// Its meaning and the reason for its value.
     pub why: &'static str,

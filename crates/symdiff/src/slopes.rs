@@ -1,12 +1,12 @@
-//! Numbers of first derivatives, without their expressions.
+//! Values of first derivatives, without their expressions.
 
 use super::tuning::TUNING;
 use crate::eval::jet::{JetMemory, JetSpace};
 use crate::expr::{Expr, Graph};
 use crate::lower::{Input, lower};
 
-/// ∂of/∂by where each symbol has the value that `value_of` gives it: a row for each of `of`. A derivative takes a few
-/// operations for each expression, where its own expression would have to be written down.
+/// ∂of/∂by, with the symbols' values by `value_of`: a row for each of `of`. A derivative takes a few operations for
+/// each expression, whereas its own expression would have to be written down.
 pub fn slopes(graph: &Graph, of: &[Expr], by: &[Expr], value_of: impl Fn(Expr) -> f64) -> Vec<Vec<f64>> {
     let symbols = graph.symbols_of(of);
     let inputs: Vec<Input> =

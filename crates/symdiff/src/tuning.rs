@@ -5,41 +5,41 @@ use crate::constants::tuning;
 tuning! {
     /// Expressions, formulas and tapes.
     "symdiff" {
-        /// Largest whole exponent of a number of twice the digits that is multiplied out.
+        /// Largest integer exponent of a number of twice the digits that is multiplied out.
         factors_of_double_double: f64 = 1024.0, moves "checks of derivatives, within rounding";
         /// Allowance for a library's error, relative to the value.
         of_library: f64 = 4.0 * f64::EPSILON, moves "widths of enclosures";
-        /// Largest whole exponent of a Taylor model that is multiplied out.
+        /// Largest integer exponent of a Taylor model that is multiplied out.
         factors_of_model: f64 = 64.0, moves "widths of proven bounds";
-        /// Most pieces of a table that a box may reach.
+        /// Most pieces of a table within a box.
         pieces_of_spline: usize = 64, moves "widths of proven bounds of models with tables";
-        /// Degree of a polynomial that is still seen to be one.
+        /// Largest degree of a recognised polynomial.
         degree_of_polynomial: usize = 12, moves "which integrals are written out";
-        /// Conditions that are joined in one in an antiderivative of a function that is defined piecewise.
+        /// Most joined conditions in an antiderivative of a function defined piecewise.
         most_conditions: usize = 8, moves "which integrals are written out";
-        /// A jump at the knots below this share of the values there is of rounding.
+        /// Share of the values at the knots below which a jump there is rounding.
         jump_of_rounding: f64 = 1e-9, moves "ranges of tables";
-        /// Periods from which on a range is too far from the first one.
+        /// Number of periods beyond which a range is too far from the first one.
         most_periods: f64 = 1e9, moves "ranges of tables";
         /// Deepest parentheses of an index.
         depth_of_indices: usize = 20, moves "which names with indices are refused";
-        /// How deep parentheses, signs and powers may nest.
+        /// Deepest nesting of parentheses, signs and powers.
         depth_of_formulas: usize = 100, moves "which formulas are refused";
         /// Most terms of a sum.
         terms_of_sum: i64 = 10_000, moves "which formulas are refused";
         /// Most operations of a formula with a sum: sums within sums multiply.
         operations_of_sums: usize = 50_000, moves "which formulas are refused";
-        /// Statements of a function, at most, but for those of a region: compilers take more than proportionally long
+        /// Most statements of a function, except for those of a region: compilers take more than proportionally long
         /// for more.
         statements_of_function: usize = 2000, moves "time in which exported code is compiled";
-        /// Nodes for which an empty graph has room: as many as most mechanisms of few bodies have.
+        /// Nodes for which an empty graph has memory, enough for most mechanisms of few bodies.
         nodes_at_first: usize = 1024, moves "time only";
-        /// Regions of fewer nodes than this are not worth the question.
+        /// Number of nodes below which a region is not worth its condition.
         least_region: usize = 4, moves "which instructions are skipped";
-        /// Instructions are grouped by operation within stretches of this many: grouping saves dispatches, a limit
+        /// Instructions of a stretch within which they are grouped by operation: grouping saves dispatches, a limit
         /// keeps live values within the first-level cache.
         window_of_grouping: usize = 256, moves "time only";
-        /// Symbols by which the derivatives are taken at once.
+        /// Symbols by which derivatives are taken at once.
         slopes_at_once: usize = 31, moves "time only";
     }
 }

@@ -12,8 +12,8 @@
 //! factors becomes, backwards, the transposed solve with the same factors; none is made anew.
 //!
 //! Kinks have the derivatives of [`Graph::derivative`](crate::Graph::derivative). Zero times anything is zero: a value
-//! that does not count has no derivative, whether its own slope is finite or not. This is also why lanes that a region
-//! of a tape does not concern may hold any value there.
+//! without influence has no derivative, whether its own slope is finite or not. For the same reason, lanes outside of a
+//! region of a tape may have any value there.
 //!
 //! Griewank & Walther, *Evaluating Derivatives* (2nd ed., 2008), ch. 3 and 4.
 
@@ -57,18 +57,18 @@ impl Adjoints {
         &mut self.values[registers.start * self.width..registers.end * self.width]
     }
 
-    /// Pulls adjoints of a tape's results back to its operands. The tile holds the values that the tape reads, before
-    /// and after.
+    /// Pulls adjoints of a tape's results back to its operands. The tile has the values that the tape reads, before and
+    /// after.
     ///
     /// # Panics
-    /// If the tape names a register that the tile does not have, or the tile is another one than these are of.
+    /// If the tape names a register that the tile does not have, or the tile is not the one of these adjoints.
     pub fn pull(&mut self, tape: &Tape, tile: &mut Tile) {
         self.record(tape, tile);
         self.pull_last(tape, tile);
     }
 
-    /// Runs a tape, to be followed backwards by [`pull_last`](Self::pull_last) later. Tapes that are recorded after it
-    /// are followed before it; between, the tile's registers change by them alone, or back to their values.
+    /// Runs a tape that [`pull_last`](Self::pull_last) follows backwards later. Tapes recorded after it are followed
+    /// before it; in between, only these tapes change the tile's registers, or the registers return to their values.
     ///
     /// # Panics
     /// As [`pull`](Self::pull).
@@ -80,7 +80,7 @@ impl Adjoints {
     /// Pulls adjoints back through the tape that was recorded last.
     ///
     /// # Panics
-    /// If it is another tape, or the tile is another one than these are of.
+    /// If it is another tape, or the tile is not the one of these adjoints.
     pub fn pull_last(&mut self, tape: &Tape, tile: &mut Tile) {
         assert!(tile.width() == self.width && tile.values().len() == self.values.len(), "adjoints of another tile");
         let (replaced, parts) = self.record.last();
@@ -108,13 +108,13 @@ struct Reverse<'r, const W: usize, const C: usize> {
     parts: &'r [usize],
 }
 
-/// `C` lanes of a register from this lane on, in a memory of `W` lanes.
+/// `C` lanes of a register from lane `lane`, in a memory of `W` lanes.
 ///
 /// # Safety
 /// The memory has the register, and `lane + C ≤ W`.
 #[inline(always)]
 unsafe fn chunk<const W: usize, const C: usize>(memory: *mut f64, register: u32, lane: usize) -> *mut [f64; C] {
-    // SAFETY: the caller's.
+    // SAFETY: by the caller's contract.
     unsafe { memory.add(register as usize * W + lane).cast() }
 }
 
@@ -124,7 +124,7 @@ unsafe fn chunk<const W: usize, const C: usize>(memory: *mut f64, register: u32,
 /// The chunk is one of [`chunk`].
 #[inline(always)]
 unsafe fn add<const C: usize>(sum: *mut [f64; C], change: &[f64; C]) {
-    // SAFETY: the caller's.
+    // SAFETY: by the caller's contract.
     unsafe {
         let mut values = sum.read();
         for i in 0..C {
@@ -134,7 +134,7 @@ unsafe fn add<const C: usize>(sum: *mut [f64; C], change: &[f64; C]) {
     }
 }
 
-/// The product, zero where a factor is.
+/// The product, zero if a factor is.
 #[inline(always)]
 fn times(a: f64, b: f64) -> f64 {
     if a == 0.0 || b == 0.0 { 0.0 } else { a * b }
@@ -183,7 +183,7 @@ impl<const W: usize, const C: usize> Vectorise for Reverse<'_, W, C> {
 }
 
 impl<const W: usize, const C: usize> Reverse<'_, W, C> {
-    /// The values of a register that are restored next.
+    /// The values of the register to restore next.
     #[inline(always)]
     fn next(&mut self) -> &[f64] {
         let (rest, last) = self.replaced.split_at(self.replaced.len() - W);
@@ -191,19 +191,19 @@ impl<const W: usize, const C: usize> Reverse<'_, W, C> {
         last
     }
 
-    /// Instructions of one operation: shares of a, b, c in the adjoint of a result.
+    /// Pulls instructions of one operation back: shares of a, b, c in the adjoint of a result.
     ///
     /// # Safety
     /// The operation has `A` registers.
     #[inline(always)]
     unsafe fn each<const A: usize>(&mut self, run: Instructions<'_>, shares: impl Fn([f64; 3], f64, f64) -> [f64; 3]) {
         let (memory, adjoints) = (self.memory, self.adjoints);
-        // SAFETY: the caller's.
+        // SAFETY: by the caller's contract.
         for Operands { a, b, c, d } in unsafe { run.of::<A>() }.rev() {
             let restored = self.next().as_ptr();
             let mut lane = 0;
             while lane < W {
-                // SAFETY: values and adjoints have all registers of the tape (whoever made this has seen to it), the
+                // SAFETY: values and adjoints have all registers of the tape (ensured by the maker of this), the
                 // restored values are those of `W` lanes, and `lane + C ≤ W`.
                 unsafe {
                     let result = chunk::<W, C>(memory, d, lane).read();
@@ -233,14 +233,14 @@ impl<const W: usize, const C: usize> Reverse<'_, W, C> {
         }
     }
 
-    /// Instructions of [`Op::SinCos`].
+    /// Pulls instructions of [`Op::SinCos`] back.
     ///
     /// # Safety
-    /// They are.
+    /// The run has that operation.
     #[inline(always)]
     unsafe fn sin_cos(&mut self, run: Instructions<'_>) {
         let (memory, adjoints) = (self.memory, self.adjoints);
-        // SAFETY: the caller's.
+        // SAFETY: by the caller's contract.
         for Operands { a, b, d, .. } in unsafe { run.of::<{ Op::SinCos.arity() }>() }.rev() {
             let cosine_before = self.next().as_ptr();
             let sine_before = self.next().as_ptr();
@@ -260,7 +260,7 @@ impl<const W: usize, const C: usize> Reverse<'_, W, C> {
     }
 }
 
-/// f'(a), where `value` = f(a).
+/// f'(a), given `value` = f(a).
 fn slope(function: Unary, a: f64, value: f64) -> f64 {
     match function {
         Unary::Neg => -1.0,
@@ -280,7 +280,7 @@ fn slope(function: Unary, a: f64, value: f64) -> f64 {
     }
 }
 
-/// The derivatives of f(a, b) by a and b, where `value` = f(a, b).
+/// The derivatives of f(a, b) by a and b, given `value` = f(a, b).
 fn slopes(function: Binary, [a, b]: [f64; 2], value: f64) -> [f64; 2] {
     let wins = |first: bool| if first { [1.0, 0.0] } else { [0.0, 1.0] };
     match function {

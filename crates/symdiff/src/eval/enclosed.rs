@@ -1,5 +1,5 @@
-//! What each function means for [`Interval`]s. Functions of `libm` are within a unit in the last place, as measured,
-//! and are taken to be within four.
+//! Functions of [`Interval`]s. Functions of `libm` are within a unit in the last place, as measured, and are assumed to
+//! be within four.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -7,7 +7,7 @@ use super::interval::{Interval, TINY};
 use crate::expr::{Binary, Unary};
 use crate::tuning::TUNING;
 
-/// `function(a)` contains the value at every member of a; all numbers where a member has none.
+/// Encloses `function(a)` for every member of a; all numbers if it is undefined for a member.
 pub fn unary(function: Unary, a: Interval) -> Interval {
     match function {
         Unary::Neg => -a,
@@ -35,7 +35,7 @@ pub fn unary(function: Unary, a: Interval) -> Interval {
     }
 }
 
-/// `function(a, b)` contains the value at every pair of members.
+/// Encloses `function(a, b)` for every pair of members.
 pub fn binary(function: Binary, a: Interval, b: Interval) -> Interval {
     match function {
         Binary::Add => a + b,
@@ -80,7 +80,7 @@ fn wave(a: Interval, crest: f64, function: impl Fn(f64) -> f64) -> Interval {
     if a.upper() - a.lower() >= TAU {
         return whole;
     }
-    // Whether a point crest + n 2π lies within, to rounding.
+    // Whether a point crest + n 2π lies in the interval, up to rounding.
     let slack = 1e-9 + 4.0 * f64::EPSILON * a.magnitude();
     let meets = |point: f64| ((a.upper() + slack - point) / TAU).floor() >= ((a.lower() - slack - point) / TAU).ceil();
     let [first, last] = [a.lower(), a.upper()].map(function);

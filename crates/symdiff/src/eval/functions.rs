@@ -1,4 +1,4 @@
-//! What each function means for one `f64`: the single definition that folding, direct evaluation and tapes share.
+//! Functions of one `f64`: the single definition that folding, direct evaluation and tapes share.
 
 use crate::eval::sincos::sin_cos;
 use crate::expr::{Binary, Unary};
@@ -42,13 +42,13 @@ pub fn binary(function: Binary, a: f64, b: f64) -> f64 {
     }
 }
 
-/// b where a is positive or NaN, else c.
+/// b if a is positive or NaN, otherwise c.
 #[inline(always)]
 pub fn select(a: f64, b: f64, c: f64) -> f64 {
     if a <= 0.0 { c } else { b }
 }
 
-/// −1, 0 or 1; unlike `f64::signum`, zero at zero. NaN stays so.
+/// −1, 0 or 1; unlike `f64::signum`, zero at zero. NaN for NaN.
 #[inline(always)]
 pub fn sign(a: f64) -> f64 {
     if a > 0.0 {
@@ -60,13 +60,13 @@ pub fn sign(a: f64) -> f64 {
     }
 }
 
-/// The smaller; NaN if either is not (`f64::min` would hide it).
+/// The smaller; NaN if either is NaN (`f64::min` would hide it).
 #[inline(always)]
 pub fn min(a: f64, b: f64) -> f64 {
     if a < b || a.is_nan() { a } else { b }
 }
 
-/// The larger; NaN if either is not.
+/// The larger; NaN if either is NaN.
 #[inline(always)]
 pub fn max(a: f64, b: f64) -> f64 {
     if a > b || a.is_nan() { a } else { b }

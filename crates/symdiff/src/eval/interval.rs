@@ -1,20 +1,20 @@
-//! Intervals that enclose: every operation's result contains the exact result for all members of its operands.
+//! Intervals that enclose: the result of an operation contains the exact results for all members of its operands.
 //!
 //! IEEE operations are correct to half a unit in the last place, so that the neighbours of a computed number enclose
 //! the exact one; no rounding mode is switched. A result without a bound (a quotient by an interval with zero in it,
-//! the root of a negative number) is [`Interval::ENTIRE`]: nothing is known, and nothing wrong is said. Sine and
+//! the root of a negative number) is [`Interval::ENTIRE`]: nothing is known, and nothing false is claimed. Sine and
 //! cosine are summed here from their series, because the errors of a library's are measured rather than proven.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// [lower, upper]; infinite where there is no bound, never NaN.
+/// [lower, upper]; infinite if there is no bound, never NaN.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interval {
     lower: f64,
     upper: f64,
 }
 
-/// From here on the multiple of π/2 has more bits than the reduction's exact products leave for it.
+/// Size from which the multiple of π/2 has too many bits for the reduction's exact products.
 const LARGE: f64 = 1e5;
 
 /// π/2 = the sum of three, the last between its neighbours (see [`sincos`](crate::eval::sincos)).
@@ -24,20 +24,20 @@ const QUADRANTS: [u64; 3] = [0x3FF9_21FB_5440_0000, 0x3DD0_B461_1A60_0000, 0x3BA
 const TERMS: i32 = 10;
 const SERIES_TAIL: f64 = 2e-22;
 
-/// Least size of an end that is not zero: 2⁻⁵⁰⁰. Products of two ends are then no subnormal numbers, each of which
-/// costs a processor more than a hundred cycles.
+/// Least size of an end that is not zero: 2⁻⁵⁰⁰. Products of two ends are then not subnormal, which would cost a
+/// processor more than a hundred cycles each.
 pub(super) const TINY: f64 = f64::from_bits((1023 - 500) << 52);
 
 impl Interval {
     /// All numbers.
     pub const ENTIRE: Self = Self { lower: f64::NEG_INFINITY, upper: f64::INFINITY };
 
-    /// One number; all, where it is NaN.
+    /// One number; all numbers for NaN.
     pub fn point(value: f64) -> Self {
         Self::new(value, value)
     }
 
-    /// Between two numbers, the smaller first; all, where either is NaN.
+    /// The interval between two numbers, the smaller first; all numbers if either is NaN.
     pub fn new(lower: f64, upper: f64) -> Self {
         if lower <= upper { Self { lower, upper } } else { Self::ENTIRE }
     }
@@ -47,8 +47,7 @@ impl Interval {
         Self::new(-Self::above(-lower), Self::above(upper))
     }
 
-    /// No smaller than the exact number that was computed: one that is negative was no positive number before its
-    /// rounding.
+    /// A number no smaller than the exact one: a negative computed number was not positive before its rounding.
     fn above(computed: f64) -> f64 {
         match computed {
             _ if computed.abs() >= TINY => computed.next_up(),
@@ -78,7 +77,7 @@ impl Interval {
         self.lower.abs().max(self.upper.abs())
     }
 
-    /// A number within, as central as can be told; 0 for [`ENTIRE`](Self::ENTIRE).
+    /// A member near the middle; 0 for [`ENTIRE`](Self::ENTIRE).
     pub fn middle(self) -> f64 {
         let middle = 0.5 * self.lower + 0.5 * self.upper;
         if middle.is_finite() { middle.clamp(self.lower, self.upper) } else { 0.0 }
@@ -100,7 +99,7 @@ impl Interval {
         Self::new(product.lower.max(0.0), product.upper.max(0.0))
     }
 
-    /// √a; all numbers where a member is negative.
+    /// √a; all numbers if a member is negative.
     pub fn sqrt(self) -> Self {
         if self.lower < 0.0 {
             return Self::ENTIRE;
@@ -116,7 +115,7 @@ impl Interval {
         if !(self.lower.is_finite() && self.upper.is_finite()) || middle.abs() >= LARGE {
             return (whole, whole);
         }
-        // Neither changes faster than its argument.
+        // Neither changes faster than the argument.
         let radius = self.radius_about(middle);
         let spread = Self::new(-radius, radius);
         let (sine, cosine) = sin_cos_of(middle);
@@ -132,11 +131,11 @@ impl Interval {
 fn sin_cos_of(x: f64) -> (Interval, Interval) {
     let n = (x * std::f64::consts::FRAC_2_PI).round();
     let [first, second, third] = QUADRANTS.map(f64::from_bits);
-    // Exact, as there: n times the first 33 bits, the remainder of x, and n times the next 33 bits.
+    // Exact, as in `sincos`: n times the first 33 bits, the remainder of x, and n times the next 33 bits.
     let (left, second) = (x - n * first, n * second);
     let third = if n == 0.0 { Interval::point(0.0) } else { Interval::outward(third, third) };
     let rest = Interval::point(left) - Interval::point(second) - Interval::point(n) * third;
-    // |rest| < 0.8, and alternating series whose terms fall: less than the first term is left out.
+    // |rest| < 0.8, and the terms of the alternating series decrease: the remainder is below the first omitted term.
     let square = rest.square();
     let tail = Interval::new(-SERIES_TAIL, SERIES_TAIL);
     let one = Interval::point(1.0);
@@ -179,7 +178,7 @@ impl Neg for Interval {
     }
 }
 
-/// Least and largest of four candidates; all numbers where one is NaN.
+/// Least and largest of four candidates; all numbers if one is NaN.
 fn hull(candidates: [f64; 4]) -> Interval {
     if candidates.iter().any(|candidate| candidate.is_nan()) {
         return Interval::ENTIRE;
@@ -243,14 +242,14 @@ mod tests {
             let root = a.max(0.0).sqrt();
             prop_assert!(x.sqrt().contains(root));
             let (sine, cosine) = x.sin_cos();
-            // libm is within a unit of the last place.
+            // libm is within a unit in the last place.
             let near = |interval: Interval, value: f64| interval.contains(value.next_up()) || interval.contains(value.next_down()) || interval.contains(value);
             prop_assert!(near(sine, libm::sin(a)) && near(cosine, libm::cos(a)));
         }
 
         #[test]
         fn exact_results_lie_strictly_within(a in -1e3..1e3_f64, b in -1e3..1e3_f64) {
-            // What rounding loses is inside too, told by the exact remainder's sign.
+            // The rounding loss is inside too, as the exact remainder's sign shows.
             let sum = Interval::point(a) + Interval::point(b);
             let lost = lost_in_sum(a, b);
             prop_assert!(sum.lower() < a + b && a + b < sum.upper());
@@ -261,7 +260,7 @@ mod tests {
         fn sines_of_points_are_thin(x in -9e4..9e4_f64) {
             let (sine, cosine) = Interval::point(x).sin_cos();
             prop_assert!(sine.upper() - sine.lower() < 3e-15 && cosine.upper() - cosine.lower() < 3e-15);
-            // sin² + cos² = 1, whatever the library says.
+            // sin² + cos² = 1, independent of the library.
             prop_assert!((sine.square() + cosine.square()).contains(1.0));
         }
 

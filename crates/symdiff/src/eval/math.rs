@@ -1,8 +1,7 @@
-//! Functions of real numbers with the same bits on every processor and system: those that formulas and tapes compute
-//! with.
+//! Functions of real numbers with the same bits on every processor and system: those of formulas and tapes.
 //!
-//! The standard library's come from the system, which picks other code, with other last digits, where the processor
-//! can fuse a multiplication with an addition.
+//! The standard library takes its functions from the system, which chooses other code, with other last digits, if the
+//! processor can fuse a multiplication with an addition.
 
 use super::sincos;
 

@@ -6,11 +6,11 @@ use super::enclosed;
 use super::interval::Interval;
 use crate::expr::{Binary, Expr, Graph, Node, Unary};
 
-/// Expressions to be enclosed over one box after the other.
+/// Expressions that are enclosed over one box after the other.
 #[derive(Clone, Debug)]
 pub struct Ranges {
     operations: Vec<Operation>,
-    /// Places of the roots among the operations.
+    /// Indices of the roots among the operations.
     roots: Vec<usize>,
 }
 
@@ -28,7 +28,7 @@ enum Operation {
 }
 
 impl Ranges {
-    /// Of `roots` over boxes of `symbols`; another symbol may be any number.
+    /// Prepares `roots` for boxes of `symbols`; any other symbol may be any number.
     pub fn new(graph: &Graph, symbols: &[Expr], roots: &[Expr]) -> Self {
         let mut place_of: FxHashMap<Expr, usize> = FxHashMap::default();
         let mut operations = Vec::new();
@@ -47,7 +47,7 @@ impl Ranges {
         Self { operations, roots: roots.iter().map(|root| place_of[root]).collect() }
     }
 
-    /// Enclosures of the roots where each symbol is within its interval; `values` is working memory.
+    /// Encloses the roots over a box, given the interval of each symbol; `values` is working memory.
     pub fn enclose<'v>(
         &'v self,
         symbols: &[Interval],

@@ -1,18 +1,18 @@
 //! Sine and cosine at once, without branches, so that a loop over lanes becomes vector instructions.
 //!
-//! Below `LARGE` the argument is reduced by the nearest multiple of π/2, which is taken off in three parts (Cody and
+//! Below `LARGE` the argument is reduced by the nearest multiple of π/2, which is subtracted in three parts (Cody and
 //! Waite), and both kernels of fdlibm are evaluated; the quadrant then chooses and signs them by bit operations. Above
-//! it, and where the argument is not finite, `libm` does the work: a mechanism that turned so often is rare.
+//! it, and if the argument is not finite, `libm` does the work: mechanisms that turn so often are rare.
 //!
 //! No fused multiply-add anywhere: every platform performs the same IEEE operations and gives the same bits. Largest
 //! error seen: 0.77 units in the last place (213 000 arguments against 200 bits, near multiples of π/2 included).
 
 use std::array;
 
-/// From here on the multiple of π/2 needs more bits than the reduction's exact products leave for it.
+/// Size from which the multiple of π/2 needs too many bits for the reduction's exact products.
 const LARGE: f64 = 1e5;
 
-/// 1.5·2⁵²: adding it rounds to the nearest integer, which then stands in the low bits of the sum.
+/// 1.5·2⁵²: adding it rounds to the nearest integer, which is then in the low bits of the sum.
 const ROUNDER: f64 = 6_755_399_441_055_744.0;
 
 /// 2/π.
@@ -24,13 +24,13 @@ const QUADRANT_2: f64 = f64::from_bits(0x3DD0_B461_1A60_0000);
 /// π/2, the rest to 53 bits.
 const QUADRANT_3: f64 = f64::from_bits(0x3BA3_198A_2E03_7073);
 
-/// (sin x, cos x); NaN where x is not finite.
+/// (sin x, cos x); NaN if x is not finite.
 #[inline(always)]
 pub fn sin_cos(x: f64) -> (f64, f64) {
     if x.abs() < LARGE { reduced(x) } else { (libm::sin(x), libm::cos(x)) }
 }
 
-/// ([sin xᵢ], [cos xᵢ]), to the bit what [`sin_cos`] gives for each.
+/// ([sin xᵢ], [cos xᵢ]), to the bit as by [`sin_cos`] for each.
 #[inline(always)]
 pub fn sin_cos_lanes<const N: usize>(x: &[f64; N]) -> ([f64; N], [f64; N]) {
     let mut sines = [0.0; N];
@@ -45,7 +45,7 @@ pub fn sin_cos_lanes<const N: usize>(x: &[f64; N]) -> ([f64; N], [f64; N]) {
     (sines, cosines)
 }
 
-/// Replaces what [`reduced`] has no answer to.
+/// Replaces the results of lanes outside the range of [`reduced`].
 #[cold]
 #[inline(never)]
 fn repair<const N: usize>(x: &[f64; N], sines: &mut [f64; N], cosines: &mut [f64; N]) {
@@ -54,10 +54,10 @@ fn repair<const N: usize>(x: &[f64; N], sines: &mut [f64; N], cosines: &mut [f64
     *cosines = answers.map(|pair| pair.1);
 }
 
-/// (sin x, cos x) for |x| < [`LARGE`]; anything at all otherwise.
+/// (sin x, cos x) for |x| < [`LARGE`]; arbitrary otherwise.
 #[inline(always)]
 fn reduced(x: f64) -> (f64, f64) {
-    // x = n π/2 + (high + low), |high| ≤ π/4 and a little.
+    // x = n π/2 + (high + low), |high| slightly above π/4 at most.
     let rounded = x * PER_QUADRANT + ROUNDER;
     let n = rounded - ROUNDER;
     // Exact: both are multiples of 2⁻⁵³ (or n = 0) and their difference is below 1.
@@ -83,7 +83,7 @@ fn reduced(x: f64) -> (f64, f64) {
     (f64::from_bits(sine.to_bits() ^ exchanged ^ sine_sign), f64::from_bits(cosine.to_bits() ^ exchanged ^ cosine_sign))
 }
 
-/// sin and cos of `x + y` for |x| ≤ π/4 and a little, y its rounding error: `__kernel_sin` and `__kernel_cos` of
+/// sin and cos of `x + y` for |x| up to slightly above π/4, y its rounding error: `__kernel_sin` and `__kernel_cos` of
 /// fdlibm (Sun Microsystems, 1993), minimax polynomials with errors below 2⁻⁵⁸.
 #[inline(always)]
 fn kernels(x: f64, y: f64) -> (f64, f64) {

@@ -1,15 +1,15 @@
 //! One source, compiled for every instruction set and chosen at run time.
 
-/// Work worth compiling for wide vectors. Mark `run` `#[inline(always)]`: that is how it gets into functions that may
+/// Work worth compiling for wide vectors. Mark `run` `#[inline(always)]`, so that it is inlined into functions that may
 /// use them. Rust contracts and reorders nothing, so the results are the same to the bit.
 pub trait Vectorise {
     /// Result.
     type Output;
-    /// Does it.
+    /// Does the work.
     fn run(self) -> Self::Output;
 }
 
-/// Does the work with the best instruction set that this machine has.
+/// Does the work with the best instruction set of this machine.
 #[inline]
 pub fn vectorised<W: Vectorise>(work: W) -> W::Output {
     InstructionSet::detect().run(work)
@@ -17,7 +17,7 @@ pub fn vectorised<W: Vectorise>(work: W) -> W::Output {
 
 /// Work over the lanes of a tile that is worth compiling for every width: its loops are over arrays of `W` values.
 pub trait LaneWork {
-    /// Does it. Mark it `#[inline(always)]`, as that of [`Vectorise`].
+    /// Does the work. Mark it `#[inline(always)]`, as `run` of [`Vectorise`].
     fn run<const W: usize>(self);
 }
 
@@ -55,7 +55,7 @@ pub fn lanes<const W: usize, T>(values: &[T]) -> &[T; W] {
     values.first_chunk().expect("there is a value for each lane")
 }
 
-/// The same, to be changed.
+/// Mutable values of all `W` lanes.
 ///
 /// # Panics
 /// If there are fewer.
@@ -64,7 +64,7 @@ pub fn lanes_mut<const W: usize, T>(values: &mut [T]) -> &mut [T; W] {
     values.first_chunk_mut().expect("there is a value for each lane")
 }
 
-/// Name of the instruction set that [`vectorised`] takes on this machine.
+/// Name of the instruction set that [`vectorised`] uses on this machine.
 pub fn instruction_set() -> &'static str {
     match InstructionSet::detect() {
         InstructionSet::Baseline => "of every processor of this kind",
@@ -108,7 +108,7 @@ impl InstructionSet {
     pub(crate) fn run<W: Vectorise>(self, work: W) -> W::Output {
         match self {
             Self::Baseline => work.run(),
-            // SAFETY: a set is only made where the machine has it.
+            // SAFETY: a set is only made if the machine has it.
             #[cfg(target_arch = "x86_64")]
             Self::Avx2 => unsafe { with_avx2(work) },
             #[cfg(target_arch = "x86_64")]

@@ -1,5 +1,5 @@
-//! What each function means for a [`DoubleDouble`]: series on short intervals, and a step of Newton's method from the
-//! `f64` for inverses.
+//! Functions of [`DoubleDouble`]s: series on short intervals, and a step of Newton's method from the `f64` for
+//! inverses.
 
 use super::DoubleDouble;
 use crate::expr::{Binary, Spline, Unary};
@@ -128,7 +128,7 @@ fn exp(a: DoubleDouble) -> DoubleDouble {
     }
     let twos = (a.high / LN_2.high).round();
     let rest = exp_m1_near_zero(a - LN_2 * twos.into()) + DoubleDouble::ONE;
-    // In two steps: a power of two of an exponent near the limits is none.
+    // In two steps: a power of two with an exponent near the limits would over- or underflow.
     let half = (0.5 * twos).trunc();
     rest.scaled(libm::exp2(half)).scaled(libm::exp2(twos - half))
 }
@@ -163,7 +163,7 @@ fn power(a: DoubleDouble, b: DoubleDouble) -> DoubleDouble {
     if a.high > 0.0 { exp(b * ln(a)) } else { libm::pow(a.high, b.high).into() }
 }
 
-/// The derivative of this order of a table, on the piece that the `f64` is on.
+/// The derivative of a table, of this order, on the piece of the `f64`.
 fn of_spline(spline: Spline, order: u8, x: DoubleDouble) -> DoubleDouble {
     let (from, cubic) = spline.cubic_at(x.high);
     let s = x - from.into();
@@ -187,7 +187,7 @@ mod tests {
         DoubleDouble::from(a) / 7.0.into()
     }
 
-    /// Digits by mpmath, as the difference to the `f64`: the constants of the series, and values of functions.
+    /// Digits by mpmath, as the difference from the `f64`: the constants of the series, and values of functions.
     #[test]
     fn values_are_those_of_forty_digits() {
         let at = |function: Unary, a: f64| unary(function, a.into());
@@ -228,7 +228,7 @@ mod tests {
         }
     }
 
-    /// Every function is that of `f64` to its digits.
+    /// Every function agrees with that of `f64` to its digits.
     #[test]
     fn functions_are_those_of_the_other_tapes() {
         let table = Spline::through(&[(-9.0, 1.0), (-1.0, -3.0), (0.5, 2.0), (3.0, 2.5), (8.0, 0.0)]).unwrap();

@@ -72,7 +72,7 @@ mod tests {
     use super::*;
     use crate::{Graph, Input, lower};
 
-    /// The difference of a tape tells the derivative that another one has, to all its digits.
+    /// Differences of a tape's values give the derivative by another tape, to all its digits.
     #[test]
     fn differences_of_a_tape_are_derivatives() {
         let mut g = Graph::new();

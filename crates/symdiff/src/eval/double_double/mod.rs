@@ -1,8 +1,8 @@
 //! Numbers of twice the digits: the unevaluated sum of two `f64`, with about 32 decimal digits.
 //!
 //! Sums and products are those of Dekker, *A floating-point technique for extending the available precision*, Numer.
-//! Math. 18 (1971) 224, without fused operations: errors of a few units of 2⁻¹⁰⁴. Differences of functions that are
-//! computed so tell derivatives to more digits than an `f64` has.
+//! Math. 18 (1971) 224, without fused operations: errors of a few units of 2⁻¹⁰⁴. Differences of functions computed in
+//! this way give derivatives with more digits than an `f64` has.
 
 mod functions;
 mod memory;
@@ -28,7 +28,7 @@ fn sum(a: f64, b: f64) -> DoubleDouble {
     DoubleDouble { high, low: (a - (high - of_b)) + (b - of_b) }.finite()
 }
 
-/// The same where |a| is no less than |b|.
+/// The same if |a| is no less than |b|.
 fn ordered_sum(a: f64, b: f64) -> DoubleDouble {
     let high = a + b;
     DoubleDouble { high, low: b - (high - a) }.finite()
@@ -56,7 +56,7 @@ impl DoubleDouble {
         self.high
     }
 
-    /// The same, without a rounding error where the sum is not finite.
+    /// The same, without a rounding error if the sum is not finite.
     fn finite(self) -> Self {
         if self.low.is_finite() { self } else { self.high.into() }
     }
@@ -77,14 +77,14 @@ impl DoubleDouble {
         ordered_sum(root, (self - product(root, root)).high / (2.0 * root))
     }
 
-    /// The largest whole number that is not larger.
+    /// The largest integer that is not larger.
     #[must_use]
     pub fn floor(self) -> Self {
         let high = self.high.floor();
         if high == self.high { ordered_sum(high, self.low.floor()) } else { high.into() }
     }
 
-    /// A power of two times it, exactly.
+    /// Its product with a power of two, exactly.
     fn scaled(self, factor: f64) -> Self {
         Self { high: self.high * factor, low: self.low * factor }
     }

@@ -4,10 +4,10 @@
 //! and is computed by the same scalar functions as anywhere else, to the bit. Functions follow from their differential
 //! equations. Let E = Σ ξᵢ ∂/∂ξᵢ, which multiplies the coefficient of a monomial of degree d by d. Then h = f(a) has E
 //! h = f'(a) E a: one sum over products for each coefficient, as in univariate automatic differentiation with the
-//! degree in place of the index. Each function's equation stands beside its code.
+//! degree instead of the index. Each function's equation is next to its code.
 //!
-//! Where a function has a kink the branch is that of the constant term, and at the kink itself the mean of both sides,
-//! as in [`Graph::derivative`](crate::Graph::derivative). Where it has a singularity (√0, log 0, asin 1, …) the
+//! At a kink of a function the branch is that of the constant term, and for a constant term at the kink itself the mean
+//! of both sides, as in [`Graph::derivative`](crate::Graph::derivative). At a singularity (√0, log 0, asin 1, …) the
 //! coefficients are infinite or NaN, unless the argument is a constant.
 
 mod memory;
@@ -21,7 +21,7 @@ use crate::expr::{Binary, Unary};
 pub use memory::JetMemory;
 pub use monomials::Monomials;
 
-/// Which products of two monomials make which, for jets of one shape. Immutable: one serves all threads.
+/// Table of products of two monomials, for jets of one shape. Immutable: one serves all threads.
 #[derive(Clone, Debug)]
 pub struct JetSpace {
     monomials: Monomials,
@@ -29,22 +29,22 @@ pub struct JetSpace {
     degrees: Vec<f64>,
     /// All (i, j) with ξ^i ξ^j = ξ^r, for each r in turn; i ascends, so (0, r) is first and (r, 0) last.
     products: Vec<[u32; 2]>,
-    /// Where those of r begin, and after the last, the end.
+    /// Start of the pairs of each r in `products`, and the end.
     starts: Vec<usize>,
     /// The r with ξ^i ξ^j = ξ^r, for each i in turn and each j up to the order.
     targets: Vec<u32>,
-    /// Where those of i begin, and after the last, the end.
+    /// Start of the targets of each i in `targets`, and the end.
     rows: Vec<usize>,
 }
 
-/// Room for intermediate jets, so that no operation allocates.
+/// Memory for intermediate jets, so that no operation allocates.
 #[derive(Clone, Debug)]
 pub struct JetScratch {
     registers: [Vec<f64>; 4],
 }
 
 impl JetScratch {
-    /// For jets of this shape.
+    /// Memory for jets of this shape.
     pub fn new(space: &JetSpace) -> Self {
         Self { registers: std::array::from_fn(|_| vec![0.0; space.len()]) }
     }
@@ -97,7 +97,7 @@ impl JetSpace {
         self.degrees.len()
     }
 
-    /// What the coefficients stand before.
+    /// The monomials of the coefficients.
     pub fn monomials(&self) -> &Monomials {
         &self.monomials
     }
@@ -108,13 +108,13 @@ impl JetSpace {
         &self.products[self.starts[r]..self.starts[r + 1]]
     }
 
-    /// Those without i = 0.
+    /// The pairs without i = 0.
     #[inline]
     fn upper(&self, r: usize) -> &[[u32; 2]] {
         &self.products[self.starts[r] + 1..self.starts[r + 1]]
     }
 
-    /// Those without i = 0 and j = 0; r > 0.
+    /// The pairs without i = 0 and j = 0; r > 0.
     #[inline]
     fn inner(&self, r: usize) -> &[[u32; 2]] {
         &self.products[self.starts[r] + 1..self.starts[r + 1] - 1]
@@ -147,7 +147,7 @@ impl JetSpace {
         if is_constant(b) {
             return self.scale(b[0], a, out);
         }
-        // −0 adds nothing to any number, not even a sign.
+        // −0 changes no number by addition, not even its sign.
         out.fill(-0.0);
         self.accumulate(a, b, out);
     }
@@ -211,7 +211,7 @@ impl JetSpace {
     /// `out = function(a)`.
     pub fn unary(&self, function: Unary, a: &[f64], out: &mut [f64], scratch: &mut JetScratch) {
         let value = functions::unary(function, a[0]);
-        // A constant stays one, whatever the function does there.
+        // A constant stays constant, even if the function is singular there.
         if is_constant(a) {
             return self.constant(value, out);
         }
@@ -301,7 +301,7 @@ impl JetSpace {
         out.iter_mut().zip(a.iter().zip(&self.degrees)).for_each(|(h, (a, degree))| *h = degree * a);
     }
 
-    /// The h with h(0) = `value` and w E h = `right`: both sides' coefficients at r, the one with w₀ (E h)ᵣ solved for.
+    /// The h with h(0) = `value` and w E h = `right`: the equation of the coefficients at r, solved for w₀ (E h)ᵣ.
     fn integrate(&self, right: &[f64], w: &[f64], value: f64, out: &mut [f64], slope: &mut [f64]) {
         out[0] = value;
         slope[0] = 0.0;
@@ -353,7 +353,7 @@ impl JetSpace {
         if is_constant(a) {
             self.constant(value, out);
         } else if a[0] == 0.0 && p >= 0.0 && p.fract() == 0.0 {
-            // Whole powers are polynomials; each factor without a constant term raises the least degree by one.
+            // Integer powers are polynomials; each factor without a constant term raises the least degree by one.
             self.constant(1.0, out);
             if p > self.monomials.order() as f64 {
                 out.fill(0.0);

@@ -1,4 +1,4 @@
-//! What a jet's coefficients stand before.
+//! Monomials of a jet's coefficients.
 
 /// All monomials of `variables` variables up to a total degree: ascending in degree, and within a degree with falling
 /// powers of the first variable, then of the second, …: 1, x, y, x², xy, y², x³, …
@@ -11,7 +11,7 @@ pub struct Monomials {
 }
 
 impl Monomials {
-    /// C(variables + order, order) of them.
+    /// All C(variables + order, order) monomials.
     pub fn new(variables: usize, order: usize) -> Self {
         let mut monomials = Self { variables, order, exponents: Vec::new(), degrees: Vec::new() };
         let mut exponents = vec![0; variables];
@@ -21,7 +21,8 @@ impl Monomials {
         monomials
     }
 
-    /// Appends those of `degree` whose first exponents are chosen; `rest` is left for `variable` and those after it.
+    /// Appends those of `degree` whose first exponents are chosen; `rest` is the degree left for `variable` and those
+    /// after it.
     fn list(&mut self, degree: usize, rest: usize, variable: usize, exponents: &mut [usize]) {
         if variable + 1 >= self.variables {
             if let Some(last) = exponents.last_mut() {

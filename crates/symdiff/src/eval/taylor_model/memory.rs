@@ -51,7 +51,7 @@ impl<'s> ModelMemory<'s> {
             let (op, run) = match part {
                 TapePart::Run(op, run) => (*op, run),
                 TapePart::Region(region) => {
-                    // Undecided is neither.
+                    // A condition of unknown sign runs the region.
                     let sign = space.sign(&values[region.condition as usize * size..][..size]);
                     region.skip_unless(sign.is_none_or(|sign| region.wants(sign)), &mut index);
                     continue;

@@ -1,11 +1,11 @@
 //! Taylor models: polynomials of ξ ∈ [−1, 1]^k with a bound on their remainder.
 //!
-//! A model is a slice: the coefficients of a jet, and behind them a radius e ≥ 0. It encloses a function f where
-//! |f(ξ) − Σ aᵣ ξ^r| ≤ e for every ξ of the box. Polynomials are computed by the jets' arithmetic, and the radius is
-//! proven afterwards from the equation that defines the result: a quotient h = a/b by the size of a − h b, a root by a
-//! − h², sine and cosine by their differential equation. So rounding, cut-off terms and the operands' radii are
-//! bounded in one way, and a jet that were computed wrongly would only make its radius large. A radius that is
-//! infinite, or NaN, says that nothing is known.
+//! A model is a slice: the coefficients of a jet, followed by a radius e ≥ 0. It encloses a function f if |f(ξ) − Σ aᵣ
+//! ξ^r| ≤ e for every ξ of the box. Polynomials are computed by the jets' arithmetic, and the radius is proven
+//! afterwards from the equation that defines the result: a quotient h = a/b by the size of a − h b, a root by a − h²,
+//! sine and cosine by their differential equation. So rounding, cut-off terms and the operands' radii are bounded in
+//! one way, and a wrongly computed jet would only have a large radius. A radius that is infinite or NaN means that
+//! nothing is known.
 //!
 //! Sums of magnitudes are rounded to nearest and enlarged by [`up`]. A coefficient of a product of monomials'
 //! coefficients sums at most (D+1)^k terms, D its degree, and D+1 ≤ (d+1)(d'+1) for the degrees d, d' of its factors;
@@ -25,11 +25,11 @@ use crate::expr::{Binary, Unary};
 /// Largest order, so that norms by degree fit on the stack.
 pub const MAX_ORDER: usize = 24;
 
-/// Half a unit in the last place, and what second-order terms add to it.
+/// Half a unit in the last place, plus second-order terms.
 const HALF_UNIT: f64 = 0.51 * f64::EPSILON;
 
-/// A sum or product of non-negative numbers, made from up to a thousand rounded operations, rounded up. (The constant
-/// stands for underflow.)
+/// A sum or product of non-negative numbers, computed by up to a thousand rounded operations, rounded up. (The constant
+/// covers underflow.)
 #[inline]
 pub fn up(x: f64) -> f64 {
     x * (1.0 + 1e-12) + 1e-290
@@ -44,7 +44,7 @@ pub struct Norms {
     weighted: f64,
     /// Σ|aᵣ| over the monomials of each degree.
     of_degree: [f64; MAX_ORDER + 2],
-    /// The same over those of each degree and above it.
+    /// Σ|aᵣ| over the monomials of each degree and above.
     tails: [f64; MAX_ORDER + 2],
     /// The radius.
     radius: f64,
@@ -68,17 +68,17 @@ pub struct ModelSpace {
     signs_are_ranges: bool,
 }
 
-/// Room for intermediate models.
+/// Memory for intermediate models.
 #[derive(Clone, Debug)]
 pub struct ModelScratch {
     jets: JetScratch,
     registers: [Vec<f64>; 3],
-    /// Of functions that are made of others.
+    /// Memory for functions composed of others.
     spare: [Vec<f64>; 2],
 }
 
 impl ModelScratch {
-    /// For models of this shape.
+    /// Memory for models of this shape.
     pub fn new(space: &ModelSpace) -> Self {
         let model = || vec![0.0; space.size()];
         Self {
@@ -103,8 +103,8 @@ impl ModelSpace {
         Self { jets, degrees, weights, signs_are_ranges: false }
     }
 
-    /// Signs that are not known are between −1 and 1 instead of unknown: right for the derivative of a maximum, and for
-    /// a sign of the time. The caller makes sure that nothing jumps with the unknowns.
+    /// Makes unknown signs range between −1 and 1 instead of being unknown: correct for the derivative of a maximum,
+    /// and for a sign of the time. The caller ensures that nothing jumps with the unknowns.
     #[must_use]
     pub fn with_ranges_of_signs(self) -> Self {
         Self { signs_are_ranges: true, ..self }
@@ -151,7 +151,7 @@ impl ModelSpace {
         up(polynomial.iter().map(|c| c.abs()).sum::<f64>() + radius)
     }
 
-    /// What the product of two polynomials loses above the order, and by rounding.
+    /// Error of the product of two polynomials: terms above the order, and rounding.
     fn product_error(&self, a: &Norms, b: &Norms) -> f64 {
         let order = self.weights.len() - 1;
         let cut: f64 = (1..=order).map(|d| a.of_degree[d] * b.tails[order + 1 - d]).sum();
@@ -170,7 +170,7 @@ impl ModelSpace {
         *self.split_mut(out).1 = if value.lower() == value.upper() { 0.0 } else { value.radius_about(out[0]) };
     }
 
-    /// `out` = the numbers from `lower` to `upper` as ξ_variable goes from −1 to 1 (and a little more).
+    /// `out` = the numbers from `lower` to `upper` (slightly enlarged) for ξ_variable from −1 to 1.
     pub fn variable(&self, variable: usize, lower: f64, upper: f64, out: &mut [f64]) {
         if lower == upper || self.weights.len() == 1 {
             return self.constant(Interval::new(lower, upper), out);
@@ -243,7 +243,7 @@ impl ModelSpace {
         *self.split_mut(out).1 = if smallest > 0.0 { up(up(missed) / smallest) } else { f64::INFINITY };
     }
 
-    /// Least |a| over the box, rounded down; not positive where a may be zero.
+    /// Least |a| over the box, rounded down; not positive if a may be zero.
     fn away_from_zero(&self, polynomial: &[f64], norms: &Norms) -> f64 {
         let constant = polynomial[0].abs();
         constant - up(norms.tails[1] + norms.radius) - f64::EPSILON * constant
@@ -264,15 +264,15 @@ impl ModelSpace {
         let missed = self.product_radius(&norms, &norms) + argument.radius + f64::EPSILON * argument.total;
         let missed = up(self.split(residual).0.iter().map(|c| c.abs()).sum::<f64>() + missed);
         let smallest = self.away_from_zero(root, &norms);
-        // h ≥ smallest and |a − h²| < smallest² leave a positive.
+        // h ≥ smallest and |a − h²| < smallest² imply a > 0.
         let proven = root[0] > 0.0 && smallest > 0.0 && missed < 0.5 * smallest * smallest;
         *self.split_mut(out).1 = if proven { up(missed / smallest) } else { f64::INFINITY };
     }
 
     /// `sine = sin a`, `cosine = cos a`.
     ///
-    /// Along the ray to ξ, z = c + i s has |e^{−ia} z|' = |z' − i a' z|. So z misses e^{ia} by no more than at 0, plus
-    /// Σ |ρᵣ|/deg r over the coefficients of ρ = E z − i z E a, where E multiplies each by its degree.
+    /// Along the ray to ξ, z = c + i s has |e^{−ia} z|' = |z' − i a' z|. So the distance of z from e^{ia} is at most
+    /// that at 0, plus Σ |ρᵣ|/deg r over the coefficients of ρ = E z − i z E a, where E multiplies each by its degree.
     pub fn sin_cos(&self, a: &[f64], sine: &mut [f64], cosine: &mut [f64], scratch: &mut ModelScratch) {
         let (x, e) = self.split(a);
         self.jets.sin_cos(x, self.split_mut(sine).0, self.split_mut(cosine).0, &mut scratch.jets);
@@ -298,7 +298,7 @@ impl ModelSpace {
         *self.split_mut(cosine).1 = missed;
     }
 
-    /// `out = function(a)`; unknown (an infinite radius) where the function is not smooth over the box.
+    /// `out = function(a)`; unknown (an infinite radius) if the function is not smooth over the box.
     pub fn unary(&self, function: Unary, a: &[f64], out: &mut [f64], scratch: &mut ModelScratch) {
         let (x, e) = self.split(a);
         match function {
@@ -343,7 +343,7 @@ impl ModelSpace {
         }
     }
 
-    /// `out = function(a, b)`; unknown where the function may jump over the box.
+    /// `out = function(a, b)`; unknown if the function may jump over the box.
     pub fn binary(&self, function: Binary, a: &[f64], b: &[f64], out: &mut [f64], scratch: &mut ModelScratch) {
         match function {
             Binary::Add => self.add(a, b, out),
@@ -361,13 +361,13 @@ impl ModelSpace {
         }
     }
 
-    /// The sign of a model over the whole box, where it has one; zero counts as negative.
+    /// The sign of a model over the whole box, if it has one; zero counts as negative.
     pub fn sign(&self, a: &[f64]) -> Option<f64> {
         let range = self.range(a);
         if range.upper() <= 0.0 { Some(-1.0) } else { (range.lower() > 0.0).then_some(1.0) }
     }
 
-    /// Within which a model is over the box.
+    /// Range of a model over the box.
     fn range(&self, a: &[f64]) -> Interval {
         let (polynomial, _) = self.split(a);
         let norms = self.norms(a);
@@ -378,7 +378,7 @@ impl ModelSpace {
         Interval::point(polynomial[0]) + Interval::new(-spread, spread)
     }
 
-    /// `out` = anything.
+    /// `out` = any number.
     pub(crate) fn unknown(&self, out: &mut [f64]) {
         self.constant(Interval::ENTIRE, out);
     }

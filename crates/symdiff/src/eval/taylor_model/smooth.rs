@@ -1,5 +1,4 @@
-//! Functions of models beyond arithmetic, roots and waves: each from the equation that defines it, like those, or from
-//! others.
+//! Functions of models beyond arithmetic, roots and waves: each from its defining equation, like those, or from others.
 //!
 //! Along the ray to ξ with s from 0 to 1, E multiplies each coefficient by its degree, and
 //! ∫ |ρ(s ξ)|/s ds ≤ Σ |ρᵣ|/deg r:
@@ -18,13 +17,13 @@ use crate::eval::interval::Interval;
 use crate::expr::{Binary, Unary};
 use crate::tuning::TUNING;
 
-/// π/2, which lies between neighbours of its rounded value.
+/// π/2, between the neighbours of its rounded value.
 fn quarter_turn() -> Interval {
     Interval::new(FRAC_PI_2.next_down(), FRAC_PI_2.next_up())
 }
 
 impl ModelSpace {
-    /// Σ |ρᵣ|/deg r of ρ = `product` − `right`, of which `right` is rounded once.
+    /// Σ |ρᵣ|/deg r of ρ = `product` − `right`, where `right` is rounded once.
     fn missed_along_rays(&self, product: &[f64], right: &[f64]) -> f64 {
         let mut missed = 0.0;
         for ((&product, &right), &degree) in product.iter().zip(right).zip(&self.degrees).skip(1) {
@@ -41,7 +40,7 @@ impl ModelSpace {
         *self.split_mut(out).1 = 0.0;
     }
 
-    /// Bound of what a product with rounded slopes loses.
+    /// Bound of the error of a product with rounded slopes.
     fn lost(&self, factor: &Norms, slopes: &Norms) -> f64 {
         self.product_error(factor, slopes) + f64::EPSILON * factor.total * slopes.total
     }
@@ -65,7 +64,7 @@ impl ModelSpace {
         *self.split_mut(out).1 = up(size(2.0 * spread) * (at_zero + missed) + by_radius);
     }
 
-    /// `out = ln a`; unknown where a may be zero or below.
+    /// `out = ln a`; unknown if a may be zero or negative.
     pub(super) fn log(&self, a: &[f64], out: &mut [f64], scratch: &mut ModelScratch) {
         let (x, e) = self.split(a);
         let norms = self.norms(a);
@@ -119,7 +118,7 @@ impl ModelSpace {
         });
     }
 
-    /// Runs with two models of room.
+    /// Calls `run` with two spare models.
     pub(super) fn with_spare(
         &self,
         scratch: &mut ModelScratch,
@@ -144,7 +143,7 @@ impl ModelSpace {
         self.split_mut(a).0.iter_mut().for_each(|c| *c = -*c);
     }
 
-    /// `out = asin a` = atan(a/√(1 − a²)); unknown where |a| may be 1.
+    /// `out = asin a` = atan(a/√(1 − a²)); unknown if |a| may be 1.
     pub(super) fn asin(&self, a: &[f64], out: &mut [f64], scratch: &mut ModelScratch) {
         self.with_spare(scratch, |first, second, scratch| {
             // (1 − a) (1 + a) has no cancellation near the ends.
@@ -167,12 +166,12 @@ impl ModelSpace {
         self.shift(quarter_turn(), out);
     }
 
-    /// `out = aᵇ`: multiplied out where b is a whole number, e^{b ln a} where a is positive, and unknown elsewhere.
+    /// `out = aᵇ`: multiplied out if b is an integer, e^{b ln a} if a is positive, and unknown otherwise.
     pub(super) fn pow(&self, a: &[f64], b: &[f64], out: &mut [f64], scratch: &mut ModelScratch) {
         let (base, exponent) = (self.range(a), self.range(b));
         let is_point = |range: Interval| range.lower() == range.upper();
         if is_point(base) && is_point(exponent) {
-            // Zero has powers too.
+            // Zero has powers, too.
             return self.constant(enclosed::binary(Binary::Pow, base, exponent), out);
         }
         let is_whole = is_point(exponent) && exponent.lower().fract() == 0.0;
@@ -194,8 +193,8 @@ impl ModelSpace {
         });
     }
 
-    /// `out` = the angle of (b, a): from a/b right of the second axis, from b/a above and below the first one, and
-    /// unknown elsewhere.
+    /// `out` = the angle of (b, a): from a/b on the right of the second axis, from b/a above and below the first one,
+    /// and unknown elsewhere.
     pub(super) fn atan2(&self, a: &[f64], b: &[f64], out: &mut [f64], scratch: &mut ModelScratch) {
         self.with_spare(scratch, |first, _, scratch| {
             if self.range(b).lower() > 0.0 {
@@ -215,13 +214,13 @@ impl ModelSpace {
         });
     }
 
-    /// `out` = the smaller or the larger of both: the one that is so in most of the box, with a radius for how far the
-    /// other is beyond it.
+    /// `out` = the smaller or the larger of both: the one that is chosen in most of the box, with a radius for the
+    /// excess of the other.
     pub(super) fn extreme(&self, function: Binary, a: &[f64], b: &[f64], out: &mut [f64]) {
         self.sub(a, b, out);
         let difference = self.range(out);
         let of_a = if function == Binary::Max { difference } else { -difference };
-        // How far b is beyond a, and a beyond b.
+        // Largest excess of b over a, and of a over b, in the sense of the function.
         let [b_beyond, a_beyond] = [(-of_a.lower()).max(0.0), of_a.upper().max(0.0)];
         let (chosen, beyond) = if b_beyond <= a_beyond { (a, b_beyond) } else { (b, a_beyond) };
         out.copy_from_slice(chosen);

@@ -1,7 +1,7 @@
-//! Tables of models: the cubic in which the middle is, with a radius for the other pieces that the box reaches.
+//! Tables of models: the cubic at the middle, with a radius for the other pieces within the box.
 //!
-//! Beyond a knot κ the cubics differ by Σ Δₖ (x − κ)ᵏ. Of a spline with two continuous derivatives Δ₀, Δ₁ and Δ₂ are
-//! rounding, so that a box that crosses a knot costs the third power of how far it goes beyond.
+//! Beyond a knot κ the cubics differ by Σ Δₖ (x − κ)ᵏ. For a spline with two continuous derivatives Δ₀, Δ₁ and Δ₂ are
+//! rounding, so that a box across a knot costs the third power of its length beyond.
 
 use super::{ModelScratch, ModelSpace, up};
 use crate::eval::interval::Interval;
@@ -9,8 +9,8 @@ use crate::expr::{Spline, SplinePiece, cubic_about, cubic_derivative};
 use crate::tuning::TUNING;
 
 impl ModelSpace {
-    /// `out` = the derivative of this order of a table at a; unknown where the box reaches too many pieces. The radius
-    /// has the jumps at knots that rounding leaves ([`Spline::rounding_jumps`]).
+    /// `out` = the derivative of a table, of this order, at a; unknown if the box contains too many pieces. The radius
+    /// includes the jumps at knots that rounding leaves ([`Spline::rounding_jumps`]).
     pub(super) fn spline(&self, spline: Spline, order: u8, a: &[f64], out: &mut [f64], scratch: &mut ModelScratch) {
         let range = self.range(a);
         let pieces = spline.pieces_over(range, TUNING.pieces_of_spline);
@@ -33,12 +33,12 @@ impl ModelSpace {
     }
 }
 
-/// How far the derivatives of two pieces' cubics are from each other where the range is in the second one.
+/// Largest difference between the derivatives of two pieces' cubics over the part of the range in the second one.
 fn apart(own: &SplinePiece, other: &SplinePiece, order: u8, range: Interval) -> f64 {
     if own.number == other.number {
         return 0.0;
     }
-    // The knot between both, on the other's side.
+    // The knot between both, on the side of `other`.
     let knot = if other.number > own.number { other.knot } else { other.end };
     let [a, b] = [own, other].map(|piece| cubic_derivative(cubic_about(piece.cubic, knot - piece.knot), order));
     let (from, to) = (range.lower().max(other.from), range.upper().min(other.to));

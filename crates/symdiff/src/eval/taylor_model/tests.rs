@@ -168,7 +168,7 @@ fn what_cannot_be_bounded_is_unknown() {
         space.unary(function, &a, &mut out, &mut scratch);
         assert_eq!(out[4], f64::INFINITY, "{function:?}");
     }
-    // A kink has a radius: how far the other side is beyond.
+    // A kink has a radius: the excess of the other side.
     space.unary(Unary::Abs, &a, &mut out, &mut scratch);
     assert!((out[4] - 0.2).abs() < 1e-9, "{}", out[4]);
     let ranges = ModelSpace::new(1, 3).with_ranges_of_signs();
@@ -190,7 +190,7 @@ mod exactly {
         [4, 2 * i, 2 * j, i * i, i * j, j * j]
     }
 
-    /// A polynomial of whole coefficients there, times 4.
+    /// The polynomial with integer coefficients at that point, times 4.
     fn at(coefficients: impl Iterator<Item = i128>, [i, j]: [i128; 2]) -> i128 {
         coefficients.zip(powers(i, j)).map(|(c, power)| c * power).sum()
     }

@@ -1,8 +1,7 @@
 //! The evaluator: a tape over a tile of samples, structure of arrays.
 //!
-//! One dispatch serves all instructions of a run and all lanes of the tile. Every lane sees the same IEEE operations
-//! in the same order whatever the width and the instruction set: Rust contracts nothing, and sine and cosine are our
-//! own.
+//! One dispatch serves all instructions of a run and all lanes of the tile. Every lane sees the same IEEE operations in
+//! the same order for every width and instruction set: Rust contracts nothing, and sine and cosine are our own.
 
 mod record;
 
@@ -114,7 +113,7 @@ impl Tile {
         self.interpret(tape, set, &mut Nothing);
     }
 
-    /// The same, and records what the tape replaces.
+    /// Runs a tape likewise, and records the values that it replaces.
     pub(crate) fn run_recorded(&mut self, tape: &Tape, record: &mut Record) {
         record.begin(tape, self.width);
         self.interpret(tape, InstructionSet::detect(), record);
@@ -123,8 +122,8 @@ impl Tile {
     fn interpret(&mut self, tape: &Tape, set: InstructionSet, keep: &mut impl Keep) {
         assert!(tape.registers() <= self.registers, "the tape belongs to a larger memory");
         let memory = self.lines.as_mut_ptr().cast::<f64>();
-        // The memory has `registers · width` values and the tape's registers are below `self.registers`: just
-        // asserted, and `Tape::registers` is computed from the instructions. `Interpretation` relies on it.
+        // The memory has `registers · width` values and the tape's registers are below `self.registers`: just asserted,
+        // and `Tape::registers` is computed from the instructions. `Interpretation` relies on it.
         match self.width {
             1 => set.run(Interpretation::<1, 1, _> { tape, memory, keep }),
             4 => set.run(Interpretation::<4, 4, _> { tape, memory, keep }),
@@ -148,7 +147,7 @@ impl<const W: usize, const C: usize, K: Keep> Vectorise for Interpretation<'_, W
 
     #[inline(always)]
     fn run(self) {
-        // SAFETY: whoever made this has seen to it that the memory has all registers of the tape.
+        // SAFETY: the maker of this has ensured that the memory has all registers of the tape.
         unsafe { interpret::<W, C, K>(self.tape, self.memory, self.keep) }
     }
 }
@@ -165,12 +164,12 @@ unsafe fn interpret<const W: usize, const C: usize, K: Keep>(tape: &Tape, memory
                 (op, run)
             }
             TapePart::Region(region) => {
-                // SAFETY: the caller's.
+                // SAFETY: by the caller's contract.
                 region.skip_unless(unsafe { wanted::<W>(region, memory) }, &mut index);
                 continue;
             }
         };
-        // SAFETY: the caller's; `A` is each operation's arity.
+        // SAFETY: by the caller's contract; `A` is each operation's arity.
         unsafe {
             match *op {
                 Op::Copy => each::<W, C, 2, K>(run, memory, keep, |a, _, _| a),

@@ -2,19 +2,19 @@
 
 use crate::lower::tape::Tape;
 
-/// Keeps values before they are replaced.
+/// Stores values before they are replaced.
 pub(super) trait Keep {
-    /// Instructions of one operation are run: their part of the tape.
+    /// Called before instructions of one operation run: their part of the tape.
     fn run(&mut self, index: usize);
 
-    /// A register of `W` lanes is about to be replaced.
+    /// Called before a register of `W` lanes is replaced.
     ///
     /// # Safety
     /// The memory has the register, and there is room for it: see [`Record::begin`].
     unsafe fn register<const W: usize>(&mut self, memory: *const f64, register: u32);
 }
 
-/// Keeps nothing.
+/// Stores nothing.
 pub(super) struct Nothing;
 
 impl Keep for Nothing {
@@ -25,20 +25,19 @@ impl Keep for Nothing {
     unsafe fn register<const W: usize>(&mut self, _: *const f64, _: u32) {}
 }
 
-/// Replaced values and parts of the tapes that were run, in the order of the runs: the last run is the first to be
-/// taken back.
+/// Replaced values and parts of the tapes, in the order of the runs: the last run is undone first.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Record {
     /// Values of all lanes of a register, one register after the other.
     replaced: Vec<f64>,
-    /// Parts of the tapes.
+    /// Parts of the tapes that ran.
     parts: Vec<usize>,
-    /// Where each run begins in both.
+    /// Start of each run in both.
     runs: Vec<(usize, usize)>,
 }
 
 impl Record {
-    /// A run of a tape in a memory of `width` lanes begins.
+    /// Begins a run of a tape in a memory of `width` lanes.
     pub fn begin(&mut self, tape: &Tape, width: usize) {
         self.runs.push((self.replaced.len(), self.parts.len()));
         self.replaced.reserve(tape.written() * width);
@@ -50,7 +49,7 @@ impl Record {
         (&self.replaced[replaced..], &self.parts[parts..])
     }
 
-    /// Forgets the last run, and keeps its room.
+    /// Removes the last run, but not its memory.
     pub fn end(&mut self) {
         if let Some((replaced, parts)) = self.runs.pop() {
             self.replaced.truncate(replaced);
