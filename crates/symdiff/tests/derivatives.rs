@@ -1,5 +1,4 @@
-//! Symbolic derivatives against finite differences, jets and adjoints: ways that share nothing but the functions'
-//! values.
+//! Symbolic derivatives against finite differences, jets and adjoints: methods that share only the functions' values.
 
 #![allow(clippy::disallowed_methods, reason = "tests compare with the standard library's functions")]
 
@@ -70,7 +69,7 @@ fn build(graph: &mut Graph, variables: &[Expr], tree: &Tree) -> Expr {
                     let a = positive(graph, a);
                     graph.neg(a)
                 }
-                // Between two whole numbers.
+                // Between two integers.
                 Unary::Floor => {
                     let (a, shift) = (inside(graph, a), graph.constant(2.5));
                     let half = graph.scale(0.5, a);
@@ -149,7 +148,7 @@ proptest! {
         let mut graph = Graph::new();
         let variables = ["x", "y", "z"].map(|name| graph.symbol(name));
         let root = build(&mut graph, &variables, &tree);
-        // How fast the function varies decides what differences can tell.
+        // The variation of the function limits the accuracy of differences.
         let scale = 1.0 + jet(&graph, root, &variables, &at, &JetSpace::new(VARIABLES, 5)).iter().map(|c| c.abs()).sum::<f64>();
         prop_assume!(scale < 1e4);
         for (variable, &symbol) in variables.iter().enumerate() {
@@ -187,7 +186,7 @@ proptest! {
     }
 
     /// Adjoints of a tape, in lanes at several points at once, are the coefficients of jets of first order; the tile
-    /// holds its values from before.
+    /// has its values from before.
     #[test]
     fn adjoints_are_jets_of_first_order(
         trees in prop::array::uniform2(tree()),

@@ -52,7 +52,7 @@ fn antiderivatives_are_right() {
     }
 }
 
-/// Between jumps and corners a derivative tells nothing of what lies between two pieces: integrals by hand.
+/// Derivatives between jumps and corners do not determine the steps between two pieces: integrals by hand.
 #[test]
 fn integrals_of_pieces_are_their_areas() {
     for (text, end, area) in [
@@ -88,7 +88,7 @@ fn what_has_no_integral_here_is_told() {
     for text in
         ["sin(t^2)", "sin(t)^2", "sin(t)*cos(2*t)", "1/t", "1/(2 + t)^2", "tanh(t)", "max(sin(t), 0)", "t*sqrt(t + 1)"]
             .into_iter()
-            // Whose derivatives end like a polynomial's.
+            // Their derivatives end like a polynomial's.
             .chain([
                 "t*floor(t)",
                 "sin(2*t + floor(t))",

@@ -199,7 +199,7 @@ proptest! {
         let atan = jets.unary(Unary::Atan, &inside);
         same!(jets.unary(Unary::Tan, &atan), inside.clone());
 
-        // atan2(b sin a, b cos a) = a, in every quadrant but for whole turns.
+        // atan2(b sin a, b cos a) = a, in every quadrant, up to whole turns.
         let (y, x) = (jets.binary(Binary::Mul, &b, &s), jets.binary(Binary::Mul, &b, &c));
         same!(jets.binary(Binary::Atan2, &y, &x), a.clone());
         same!(jets.binary(Binary::Atan2, &inside, &one), atan.clone());
@@ -221,7 +221,7 @@ proptest! {
         same!(jets.binary(Binary::Pow, &negative, &three), jets.binary(Binary::Mul, &square, &negative));
     }
 
-    /// The constant term is what a graph evaluates, to the bit.
+    /// The constant term equals the value of a graph, to the bit.
     #[test]
     fn constant_terms_are_scalar(a in jet_at(-2.0..2.0_f64), b in jet_at(prop_oneof![-2.0..2.0_f64, Just(0.0), Just(-0.0)])) {
         let mut jets = Calculator::new(3, 4);

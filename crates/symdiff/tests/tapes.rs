@@ -10,13 +10,13 @@ const INPUTS: usize = 5;
 /// Stages below the kernels'.
 const SHARED: usize = 2;
 
-/// What one more node does with earlier ones.
+/// Operation of one more node on earlier ones.
 #[derive(Clone, Copy, Debug)]
 enum Step {
     Constant(f64),
     Unary(Unary, usize),
     Binary(Binary, usize, usize),
-    /// Something longer that is only wanted under a condition; with something else elsewhere, or nothing.
+    /// A longer expression that is only wanted under a condition; with another one elsewhere, or nothing.
     Guarded {
         condition: usize,
         of: [usize; 2],
@@ -74,7 +74,7 @@ fn value(input: usize, lane: usize, seed: f64) -> f64 {
     (seed + 0.7 * input as f64 + 0.31 * lane as f64).sin() * 3.0
 }
 
-/// What nobody in the tile asks for is not computed, and whoever asks gets the same bits.
+/// Nodes that no lane of the tile wants are not computed, and lanes that want them get the same bits.
 #[test]
 fn blocks_are_skipped_where_no_lane_wants_them() {
     let mut g = Graph::new();
@@ -90,12 +90,13 @@ fn blocks_are_skipped_where_no_lane_wants_them() {
     let inputs = [(c, 0), (x, 1), (y, 2)].map(|(symbol, register)| Input { symbol, stage: 0, register });
     let lowered = lower(&g, &inputs, 0, 3, &[vec![(total, Some(1))]]);
     let tape = &lowered.kernels[0];
-    // Apart, the sum is all there is; it stands where the block would put its choice, and is copied to x at the end.
+    // Outside of the block there is only the sum; it is computed in the register of the block's choice, and copied to x
+    // at the end.
     assert_eq!((tape.len_where(false), tape.len_where(true), tape.len()), (2, 24, 24), "{tape:?}");
     for width in WIDTHS {
         for active in 0..=width.min(2) {
             let mut tile = Tile::new(width, lowered.registers, &lowered.constants);
-            // What a block leaves behind may be anything.
+            // Memory of a skipped block may be anything.
             tile.values_mut()[3 * width..].fill(f64::NAN);
             lowered.constants.iter().for_each(|&(register, value)| tile.lane_mut(register as usize).fill(value));
             let at = |lane: usize| [if lane < active { 0.5 } else { -0.0 }, lane as f64 - 3.0, 1.0];
@@ -113,7 +114,7 @@ fn blocks_are_skipped_where_no_lane_wants_them() {
     }
 }
 
-/// Equal to the bit; all that is NaN counts as one.
+/// Whether both are equal to the bit, or both NaN.
 fn same(a: f64, b: f64) -> bool {
     a.to_bits() == b.to_bits() || (a.is_nan() && b.is_nan())
 }
@@ -131,7 +132,7 @@ proptest! {
         let inputs: Vec<Input> =
             (0..INPUTS).map(|i| Input { symbol: nodes[i], stage: stages[i], register: i as u32 }).collect();
         let observed: Vec<Expr> = picks.iter().map(|&(pick, _)| nodes[pick % nodes.len()]).collect();
-        // The second kernel puts results where inputs of its own stage stand, as a step does with the state.
+        // The second kernel writes results over inputs of its own stage, as a step does with the state.
         let mut places = (0..INPUTS).filter(|&i| stages[i] == SHARED);
         let replaced: Vec<(Expr, Option<u32>)> =
             observed.iter().zip(&picks).map(|(&expr, &(_, replace))| {

@@ -6,7 +6,7 @@ use super::graph::Graph;
 use super::node::{Binary, Expr, Node, Unary};
 use super::visits::Visits;
 
-/// A matrix of expressions of which most are zero: its nonzero entries by row, columns ascending.
+/// A sparse matrix of expressions: its nonzero entries by row, columns ascending.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct SparseMatrix {
     /// Number of columns.
@@ -54,7 +54,7 @@ impl SparseMatrix {
 
 impl Graph {
     /// `∂of/∂by`, where `by` is a symbol. At a kink (`abs`, `min`, `max`) the mean of both sides is taken; jumps (of
-    /// `sign`, `floor`) have no derivative; a guarded value is taken to be continuous where its condition changes
+    /// `sign`, `floor`) have no derivative; a guarded value is assumed to be continuous where its condition changes
     /// sign.
     pub fn derivative(&mut self, of: Expr, by: Expr) -> Expr {
         let mut visits = std::mem::take(&mut self.visits);
@@ -63,7 +63,7 @@ impl Graph {
         derivative
     }
 
-    /// `∂rows/∂by` with its sparsity: only what a row depends on is looked at, so the work grows with the nonzeros.
+    /// `∂rows/∂by` with its sparsity: only the nodes below a row are visited, so the work grows with the nonzeros.
     pub fn jacobian(&mut self, rows: &[Expr], by: &[Expr]) -> SparseMatrix {
         let column_of: FxHashMap<Expr, usize> =
             by.iter().enumerate().map(|(column, &symbol)| (symbol, column)).collect();
@@ -82,7 +82,7 @@ impl Graph {
         matrix
     }
 
-    /// Columns of the symbols that `of` needs, ascending.
+    /// Columns of the symbols on which `of` depends, ascending.
     fn columns_below(&self, of: Expr, column_of: &FxHashMap<Expr, usize>, visits: &mut Visits) -> Vec<usize> {
         visits.begin(self.len());
         visits.stack.push(of);
@@ -121,7 +121,7 @@ impl Graph {
         visits.begin(self.len());
         visits.stack.push(of);
         while let Some(expr) = visits.stack.pop() {
-            // A node is made after all that it depends on.
+            // A node is made after all nodes on which it depends.
             if expr < by || !visits.is_first(expr) || self.derivatives.contains_key(&(expr, by)) {
                 continue;
             }
@@ -132,7 +132,7 @@ impl Graph {
         &visits.found
     }
 
-    /// The chain rule at one node; the children's derivatives are known, and zero where none is.
+    /// The chain rule at one node; the children's derivatives are known, and zero if absent.
     fn apply_rule(&mut self, expr: Expr, node: Node, by: Expr, zero: Expr) -> Expr {
         let known = |graph: &Graph, child: Expr| graph.derivatives.get(&(child, by)).copied().unwrap_or(zero);
         match node {

@@ -83,7 +83,7 @@ impl Graph {
     }
 
     fn mul_nodes(&mut self, a: Expr, b: Expr) -> Expr {
-        // The constant, where there is one, stands first.
+        // A constant operand comes first.
         let (a, b) = if self.as_constant(b).is_some() { (b, a) } else { (a, b) };
         if let Some(factor) = self.as_constant(a) {
             if factor == 0.0 {
@@ -153,7 +153,7 @@ impl Graph {
         }
     }
 
-    /// `function` is one of the two.
+    /// Simplifies a guarded value; `function` is `Select` or `SelectElse`.
     fn guard_nodes(&mut self, function: Binary, condition: Expr, value: Expr) -> Expr {
         if self.is_zero(value) {
             return value;
@@ -169,14 +169,15 @@ impl Graph {
         }
     }
 
-    /// `value` where `condition` is positive, exactly 0 elsewhere, whatever `value` is there: [`Binary::Select`].
+    /// `value` where `condition` is positive, exactly 0 elsewhere, even if `value` is not finite there:
+    /// [`Binary::Select`].
     pub fn only_where(&mut self, condition: Expr, value: Expr) -> Expr {
         self.binary(Binary::Select, condition, value)
     }
 
     /// `a` where `condition` is positive, `b` elsewhere.
     pub fn select(&mut self, condition: Expr, a: Expr, b: Expr) -> Expr {
-        // A choice under the same condition has been made.
+        // An operand that is a choice under the same condition is decided.
         let half = |expr: Expr, which: usize| match self.node(expr) {
             Node::Binary(Binary::Add, x, y) => match self.choice(x, y) {
                 Some(choice) if choice.condition == condition => choice.halves[which].1,
@@ -192,7 +193,7 @@ impl Graph {
         self.add(a, b)
     }
 
-    /// `a` to a whole power, by repeated squaring.
+    /// `a` to an integer power, by repeated squaring.
     pub fn powi(&mut self, a: Expr, exponent: i32) -> Expr {
         let mut result = self.constant(1.0);
         let mut square = a;

@@ -15,7 +15,7 @@ use crate::tuning::TUNING;
 
 /// An arena of expressions. Constant folding and the algebraic identities are applied as nodes are made.
 ///
-/// The identities are those of real algebra (`0 x = 0` also where x could be infinite); none changes the order of
+/// The identities are those of real algebra (`0 x = 0` even if x could be infinite); none changes the order of
 /// floating-point operations otherwise.
 #[derive(Clone, Debug)]
 pub struct Graph {
@@ -26,7 +26,7 @@ pub struct Graph {
     symbols: FxHashMap<String, Expr>,
     most: Option<usize>,
     pub(crate) derivatives: FxHashMap<(Expr, Expr), Expr>,
-    /// Memory that all derivatives share: it is as large as the graph.
+    /// Memory that all derivatives share, since it is as large as the graph.
     pub(super) visits: Visits,
 }
 
@@ -60,8 +60,7 @@ impl Graph {
         self.nodes.is_empty()
     }
 
-    /// From now on the graph is full where it has more nodes; it goes on growing, but who fills it may look and give
-    /// up.
+    /// Sets the number of nodes above which the graph is full; it still grows, but its user may check and give up.
     pub fn limit(&mut self, most: Option<usize>) {
         self.most = most;
     }
@@ -101,13 +100,13 @@ impl Graph {
         }
     }
 
-    /// A number. Negative zero becomes zero, so that there is one of it.
+    /// A number. Negative zero becomes zero, so that zero is unique.
     pub fn constant(&mut self, value: f64) -> Expr {
         let value = if value == 0.0 { 0.0 } else { value };
         self.intern(Node::Constant(value.to_bits()))
     }
 
-    /// The number a node stands for, if it is one.
+    /// The value of a number's node; `None` for any other node.
     pub fn as_constant(&self, expr: Expr) -> Option<f64> {
         match self.node(expr) {
             Node::Constant(bits) => Some(f64::from_bits(bits)),

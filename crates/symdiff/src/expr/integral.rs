@@ -1,4 +1,4 @@
-//! Antiderivatives of what can be integrated term by term.
+//! Antiderivatives of expressions that can be integrated term by term.
 //!
 //! ```text
 //! polynomials p of t            Σ p⁽ᵏ⁾(0) tᵏ⁺¹/(k + 1)!
@@ -22,7 +22,7 @@ use super::node::{Binary, Expr, Node, Unary};
 use crate::tuning::TUNING;
 
 impl Graph {
-    /// ∫ `of` d`by` from 0, where `by` is a symbol; `None` where it is not of the forms above.
+    /// ∫ `of` d`by` from 0, where `by` is a symbol; `None` if it is not of the forms above.
     pub fn integral(&mut self, of: Expr, by: Expr) -> Option<Expr> {
         let moving = self.moving(of, by);
         let (one, zero) = (self.constant(1.0), self.constant(0.0));
@@ -89,7 +89,7 @@ impl Graph {
         moving
     }
 
-    /// u̇ of u = a + b t; `None` where it is not that, or does not depend on t.
+    /// u̇ of u = a + b t; `None` if u is not of this form, or does not depend on t.
     fn steady_slope(&mut self, u: Expr, by: Expr) -> Option<Expr> {
         if !self.is_algebraic(u, by) {
             return None;
@@ -112,8 +112,8 @@ impl Graph {
         Some(self.mul(factor, area))
     }
 
-    /// Whether nothing but sums, products, quotients and powers makes an expression of t: a function with jumps or
-    /// corners may have a derivative like a polynomial's between them.
+    /// Whether only sums, products, quotients and powers make an expression of t: between its jumps or corners, another
+    /// function may have a derivative like a polynomial's.
     fn is_algebraic(&self, of: Expr, by: Expr) -> bool {
         self.moving(of, by).into_iter().all(|expr| {
             matches!(
@@ -173,7 +173,7 @@ impl Graph {
         let slopes = self.polynomial(polynomial, by)?;
         let (mut sum, mut repeated) = (self.constant(0.0), other?);
         for (order, slope) in slopes.into_iter().enumerate() {
-            // A second antiderivative of a power is none of a product any more.
+            // A second antiderivative of a power is not one of a product any more.
             if order > 0 && !matches!(self.node(other?), Node::Unary(Unary::Sin | Unary::Cos | Unary::Exp, _)) {
                 return None;
             }
@@ -184,7 +184,7 @@ impl Graph {
         Some(sum)
     }
 
-    /// ∫ f(u), where what depends on t is f alone, times factors that do not.
+    /// ∫ f(u), where only f depends on t, times factors that do not.
     fn integral_of_function(&mut self, of: Expr, by: Expr) -> Option<Expr> {
         let moving = self.moving(of, by);
         match self.node(of) {

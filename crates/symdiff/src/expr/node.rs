@@ -42,7 +42,7 @@ pub enum Unary {
     Tanh,
     /// −1, 0 or 1.
     Sign,
-    /// The largest whole number that is not larger.
+    /// The largest integer that is not larger.
     Floor,
     /// A derivative, of this order, of a table.
     Spline(Spline, u8),
@@ -67,14 +67,14 @@ pub enum Binary {
     Min,
     /// The larger of both.
     Max,
-    /// b where a is positive (or NaN), 0 elsewhere. Nodes that only such b need are not computed where no sample
-    /// of a tile has a positive a.
+    /// b where a is positive (or NaN), 0 elsewhere. Nodes that are needed only for b are not computed if no sample of a
+    /// tile has a positive a.
     Select,
-    /// b where a ≤ 0, 0 elsewhere: together with [`Select`](Self::Select) one of both, always.
+    /// b where a ≤ 0, 0 elsewhere: complementary to [`Select`](Self::Select).
     SelectElse,
 }
 
-/// What a node is.
+/// Content of a node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Node {
     /// A number, by its bits, so that nodes can be hashed.

@@ -6,7 +6,7 @@ use super::graph::Graph;
 use super::node::{Binary, Expr, Node, Unary};
 use crate::eval::functions;
 
-/// A sum of something under a condition and something elsewhere.
+/// A sum of one value under a condition and another one elsewhere.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Choice {
     pub condition: Expr,
@@ -15,7 +15,7 @@ pub(crate) struct Choice {
 }
 
 impl Graph {
-    /// What `x + y` is where it is a [choice](Self::select).
+    /// The [choice](Self::select) that `x + y` is; `None` if it is not one.
     pub(crate) fn choice(&self, x: Expr, y: Expr) -> Option<Choice> {
         let half = |wanted: Binary, expr: Expr| match self.node(expr) {
             Node::Binary(function, condition, value) if function == wanted => Some((condition, value)),
@@ -27,7 +27,7 @@ impl Graph {
         })
     }
 
-    /// `roots` as they are where `condition` is positive (`holds`), or where it is not.
+    /// `roots` under the assumption that `condition` is positive (`holds`), or that it is not.
     pub fn assume(&mut self, roots: &[Expr], condition: Expr, holds: bool) -> Vec<Expr> {
         let zero = self.constant(0.0);
         self.rebuild(roots, |_, _, node, image| match node {
@@ -41,7 +41,7 @@ impl Graph {
     /// All nodes that `roots` need, themselves included, children before parents.
     pub fn reachable(&self, roots: &[Expr]) -> Vec<Expr> {
         let Some(last) = roots.iter().max() else { return Vec::new() };
-        // A node is made after all that it needs: one look at each, from the last on, finds all. A bit a node.
+        // A node is made after all nodes that it needs: one pass from the last on finds all. One bit per node.
         let bits = u64::BITS as usize;
         let mut needed = vec![0_u64; last.index() / bits + 1];
         roots.iter().for_each(|root| needed[root.index() / bits] |= 1 << (root.index() % bits));
@@ -69,7 +69,7 @@ impl Graph {
         found
     }
 
-    /// Those nodes that the roots need which depend on some symbols.
+    /// The nodes needed by the roots that depend on some symbols.
     pub fn depending_on(&self, roots: &[Expr], symbols: &[Expr]) -> FxHashSet<Expr> {
         let mut found: FxHashSet<Expr> = symbols.iter().copied().collect();
         for expr in self.reachable(roots) {
@@ -80,8 +80,8 @@ impl Graph {
         found
     }
 
-    /// Whether an expression changes with a symbol other than by jumps: what stands in `sign`, `floor` or in a
-    /// condition alone makes it jump, and is constant between two jumps.
+    /// Whether an expression changes with a symbol other than by jumps: dependence through `sign`, `floor` or a
+    /// condition alone makes it jump, and it is constant between two jumps.
     pub fn changes_steadily(&self, of: Expr, with: &[Expr]) -> bool {
         let mut steadily = FxHashSet::default();
         for expr in self.reachable(&[of]) {
@@ -110,7 +110,7 @@ impl Graph {
         roots: &[Expr],
         replaced: impl Fn(&mut Self, Expr, Node, &[Expr]) -> Option<Expr>,
     ) -> Vec<Expr> {
-        // By node.
+        // By index of the node.
         let mut image = vec![Expr(0); past(roots)];
         for expr in self.reachable(roots) {
             let node = self.node(expr);
@@ -125,17 +125,17 @@ impl Graph {
         roots.iter().map(|root| image[root.index()]).collect()
     }
 
-    /// Values of `roots` where each symbol has the value that `value_of` gives it: one pass, in index order, with the
-    /// same arithmetic as the tapes.
+    /// Values of `roots` with the symbols' values by `value_of`: one pass, in index order, with the same arithmetic as
+    /// the tapes.
     pub fn evaluate(&self, roots: &[Expr], mut value_of: impl FnMut(Expr) -> f64) -> Vec<f64> {
-        // By node.
+        // By index of the node.
         let mut values = vec![0.0; past(roots)];
         for expr in self.reachable(roots) {
             let value = match self.node(expr) {
                 Node::Constant(bits) => f64::from_bits(bits),
                 Node::Symbol(_) => value_of(expr),
                 Node::Unary(function, a) => functions::unary(function, values[a.index()]),
-                // A sum would lose the sign of zero, which instructions keep.
+                // A sum would lose the sign of zero, which instructions preserve.
                 Node::Binary(Binary::Add, x, y) if let Some(choice) = self.choice(x, y) => {
                     let [(_, a), (_, b)] = choice.halves;
                     functions::select(values[choice.condition.index()], values[a.index()], values[b.index()])
@@ -148,7 +148,7 @@ impl Graph {
     }
 }
 
-/// The number of the node after the last of these.
+/// The index after the last of these nodes.
 fn past(roots: &[Expr]) -> usize {
     roots.iter().max().map_or(0, |last| last.index() + 1)
 }

@@ -9,14 +9,14 @@ use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssi
 use super::graph::Graph;
 use super::node::{Binary, Expr, Unary};
 
-/// A graph under construction, which any number of [`Scalar`]s add nodes to.
+/// A graph under construction, to which any number of [`Scalar`]s add nodes.
 #[derive(Debug, Default)]
 pub struct Builder {
     graph: RefCell<Graph>,
 }
 
 impl Builder {
-    /// With an empty graph.
+    /// A builder with an empty graph.
     pub fn new() -> Self {
         Self::default()
     }
@@ -26,18 +26,18 @@ impl Builder {
         self.graph.into_inner()
     }
 
-    /// The graph as it is now.
+    /// The graph in its present state.
     ///
     /// # Panics
-    /// Operators panic while the reference is held: drop it before the next one.
+    /// Operators panic while the reference is alive: drop it before the next one.
     pub fn graph(&self) -> Ref<'_, Graph> {
         self.graph.borrow()
     }
 
-    /// Hands the graph to a pass that works on nodes.
+    /// Passes the graph to a function on nodes.
     ///
     /// # Panics
-    /// Where `pass` itself uses the builder.
+    /// If `pass` itself uses the builder.
     pub fn with<R>(&self, pass: impl FnOnce(&mut Graph) -> R) -> R {
         pass(&mut self.graph.borrow_mut())
     }
@@ -103,7 +103,7 @@ impl<'g> Scalar<'g> {
         self.expr
     }
 
-    /// The nodes of several.
+    /// The nodes of several scalars.
     pub fn exprs(scalars: &[Self]) -> Vec<Expr> {
         scalars.iter().map(|scalar| scalar.expr).collect()
     }
@@ -113,7 +113,7 @@ impl<'g> Scalar<'g> {
         self.builder
     }
 
-    /// The number it stands for, if it is one.
+    /// Its value, if it is a number.
     pub fn as_constant(self) -> Option<f64> {
         self.builder.graph().as_constant(self.expr)
     }
@@ -172,7 +172,7 @@ impl<'g> Scalar<'g> {
         self.unary(Unary::Sign)
     }
 
-    /// A whole power, by repeated squaring.
+    /// An integer power, by repeated squaring.
     pub fn powi(self, exponent: i32) -> Self {
         self.builder.scalar(self.builder.with(|graph| graph.powi(self.expr, exponent)))
     }
@@ -202,7 +202,7 @@ impl<'g> Scalar<'g> {
         condition.binary(Binary::Select, self)
     }
 
-    /// `a` where it is positive, `b` elsewhere.
+    /// `a` where this scalar is positive, `b` elsewhere.
     pub fn select(self, a: Self, b: Self) -> Self {
         self.builder.scalar(self.builder.with(|graph| graph.select(self.expr, a.expr, b.expr)))
     }
@@ -212,7 +212,7 @@ impl<'g> Scalar<'g> {
         self.builder.scalar(self.builder.with(|graph| graph.derivative(self.expr, by.expr)))
     }
 
-    /// ∫ `self` d`by` from 0, where `by` is a symbol; `None` where there is no formula for it: [`Graph::integral`].
+    /// ∫ `self` d`by` from 0, where `by` is a symbol; `None` if there is no formula for it: [`Graph::integral`].
     pub fn integral(self, by: Self) -> Option<Self> {
         let integral = self.builder.with(|graph| graph.integral(self.expr, by.expr));
         integral.map(|expr| self.builder.scalar(expr))

@@ -1,11 +1,11 @@
 //! Natural cubic splines: a table's values as a function with two continuous derivatives.
 //!
 //! Between neighbouring knots the function is a cubic; its second derivative is zero at the ends, and beyond them it
-//! goes on along its tangents, so that it has two continuous derivatives everywhere (de Boor, *A Practical Guide to
-//! Splines*, ch. 4). A periodic one repeats itself instead, with two continuous derivatives where it begins anew.
+//! continues along its tangents, so that it has two continuous derivatives everywhere (de Boor, *A Practical Guide to
+//! Splines*, ch. 4). A periodic one repeats itself instead, with two continuous derivatives at its ends.
 //!
-//! A table is kept for the life of the process, once whatever the number of graphs that use it: an expression refers
-//! to it as to any other function, and is copied, compared and hashed like one.
+//! A table is stored for the life of the process, once for all graphs that use it: an expression refers to it as to any
+//! other function, and is copied, compared and hashed like one.
 
 use std::collections::HashMap;
 use std::hash::{Hash, Hasher};
@@ -19,14 +19,14 @@ use crate::eval::interval::Interval;
 #[derive(Clone, Copy)]
 pub struct Spline(&'static Pieces);
 
-/// How the function goes from point to point.
+/// Interpolation between the points.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 enum Course {
     /// With two continuous derivatives.
     Natural,
-    /// The same, and begins anew where it ends.
+    /// Like `Natural`, but repeats itself beyond its ends.
     Periodic,
-    /// Straight.
+    /// By straight lines.
     Linear,
 }
 
@@ -37,7 +37,7 @@ type Points = (Vec<u64>, Course);
 type Content = (Vec<u64>, bool);
 
 impl Spline {
-    /// Through points (x, y), x ascending.
+    /// The spline through points (x, y), x ascending.
     ///
     /// # Errors
     /// The first point that is wrong.
@@ -45,7 +45,8 @@ impl Spline {
         Self::of(points, Course::Natural)
     }
 
-    /// Through points (x, y), x ascending, over a period from the first to the last, which have the same y.
+    /// The periodic spline through points (x, y), x ascending, over a period from the first to the last, which have the
+    /// same y.
     ///
     /// # Errors
     /// The first point that is wrong.
@@ -53,7 +54,7 @@ impl Spline {
         Self::of(points, Course::Periodic)
     }
 
-    /// Straight from point (x, y) to point, x ascending: its derivatives jump there.
+    /// Straight lines from point (x, y) to point, x ascending: the derivatives jump there.
     ///
     /// # Errors
     /// The first point that is wrong.
@@ -79,7 +80,7 @@ impl Spline {
         }
         let bits = points.iter().flat_map(|&(x, y)| [x.to_bits(), y.to_bits()]).collect();
         let known = KNOWN.get_or_init(Mutex::default);
-        // A panic while the lock was held leaves the map as it was before.
+        // A panic during the lock leaves the map unchanged.
         let mut known = known.lock().unwrap_or_else(PoisonError::into_inner);
         let pieces = || match course {
             Course::Natural => Pieces::natural(points),
@@ -89,8 +90,8 @@ impl Spline {
         Ok(*known.entry((bits, course)).or_insert_with(|| Self::kept(pieces())))
     }
 
-    /// Of knots and cubics as [`pieces`](Self::pieces) has them; `None` where the knots do not ascend, or the cubics
-    /// are not one more.
+    /// The spline with these knots and cubics, as in [`pieces`](Self::pieces); `None` if the knots do not ascend, or
+    /// the number of cubics is not one more.
     pub fn of_pieces(knots: Vec<f64>, cubics: Vec<[f64; 4]>, periodic: bool) -> Option<Self> {
         let is_sound = knots.len() >= 2
             && knots.windows(2).all(|pair| pair[0] < pair[1])
@@ -99,7 +100,7 @@ impl Spline {
         is_sound.then(|| Self::kept(Pieces { knots, cubics, periodic, jumps: OnceLock::new() }))
     }
 
-    /// The one with these pieces.
+    /// The stored spline with these pieces.
     fn kept(pieces: Pieces) -> Self {
         static KNOWN: OnceLock<Mutex<HashMap<Content, Spline>>> = OnceLock::new();
         let numbers = pieces.knots.iter().chain(pieces.cubics.as_flattened());
@@ -108,7 +109,7 @@ impl Spline {
         *known.entry((bits, pieces.periodic)).or_insert_with(|| Self(Box::leak(Box::new(pieces))))
     }
 
-    /// Knots, cubics (below the first knot, between each two, above the last; of powers of x minus the knot before),
+    /// Knots, cubics (below the first knot, between each two, above the last; in powers of x minus the knot before),
     /// and whether it repeats.
     pub fn pieces(self) -> (&'static [f64], &'static [[f64; 4]], bool) {
         (&self.0.knots, &self.0.cubics, self.0.periodic)
@@ -129,27 +130,27 @@ impl Spline {
         self.taylor_of(self.piece(x), order, x)
     }
 
-    /// The cubic at x, and the number from which its powers count.
+    /// The cubic at x, and the origin of its powers.
     pub(crate) fn cubic_at(self, x: f64) -> (f64, [f64; 4]) {
         let shift = if self.0.periodic { self.shift(x) } else { 0.0 };
         let piece = self.piece(x - shift);
         (self.0.knots[piece.max(1) - 1] + shift, self.0.cubics[piece])
     }
 
-    /// The piece that a number is in.
+    /// The piece that contains a number.
     fn piece(self, x: f64) -> usize {
         let piece = self.0.knots.partition_point(|knot| *knot <= x);
-        // What rounding puts at an end of the period belongs to the piece there.
+        // Rounding at an end of the period belongs to the piece there.
         if self.0.periodic { piece.clamp(1, self.0.knots.len() - 1) } else { piece }
     }
 
-    /// The periods between a number and the first one.
+    /// Length of the periods between a number and the first period.
     fn shift(self, x: f64) -> f64 {
         let (first, last) = self.range();
         (last - first) * ((x - first) / (last - first)).floor()
     }
 
-    /// The same of the cubic of a piece, which x need not be in.
+    /// The same for the cubic of a given piece, even if x is not in it.
     fn taylor_of(self, piece: usize, order: u8, x: f64) -> [f64; 4] {
         let Pieces { knots, cubics, .. } = self.0;
         let s = x - knots[piece.max(1) - 1];
@@ -164,7 +165,7 @@ impl Spline {
         }
     }
 
-    /// What the derivative of this order may be over an interval.
+    /// Enclosure of the derivative of this order over an interval.
     pub fn enclose(self, order: u8, x: Interval) -> Interval {
         if !x.magnitude().is_finite() {
             return Interval::ENTIRE;
@@ -175,12 +176,12 @@ impl Spline {
         self.enclose_pieces(order, x)
     }
 
-    /// The same of a periodic one: over a whole period, or over the parts of one that the interval covers.
+    /// The same for a periodic one: over a whole period, or over the parts of one that the interval covers.
     fn enclose_periodic(self, order: u8, x: Interval) -> Interval {
         let (first, last) = self.range();
         let whole = || self.enclose_pieces(order, Interval::new(first, last));
         let shift = self.shift(x.lower());
-        // The shift is rounded; a value that this moves out of the period is near its end.
+        // The shift is rounded; a value that it moves out of the period is near its end.
         let slack = 4.0 * f64::EPSILON * x.magnitude().max(shift.abs());
         let (lower, upper) = (x.lower() - shift - slack, x.upper() - shift + slack);
         if upper - lower >= last - first {
@@ -267,7 +268,7 @@ mod tests {
                 .map(|x| (spline.derivative(0, x) - x.sin()).abs())
                 .fold(0.0, f64::max)
         };
-        // The sine has no curvature at the ends, as a natural spline's.
+        // The curvature of the sine is zero at the ends, like a natural spline's.
         let ratio = error(10) / error(20);
         assert!((ratio - 16.0).abs() < 2.0, "{ratio}");
     }
@@ -302,7 +303,7 @@ mod tests {
             let at = |i: i32| 0.0131 * f64::from(i);
             (-2000..2000).map(at).map(|x| (spline.derivative(0, x) - wave(x)).abs()).fold(0.0, f64::max)
         };
-        // Of order four up to the ends: there is no end.
+        // Of order four up to the ends, since a periodic one has none.
         let ratio = error(16) / error(32);
         assert!((ratio - 16.0).abs() < 2.0, "{ratio}");
         assert_eq!(Spline::periodic(&[(0.0, 1.0), (1.0, 2.0)]), Err(SplineError::NotPeriodic));

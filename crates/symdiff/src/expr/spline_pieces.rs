@@ -5,11 +5,11 @@ use std::sync::OnceLock;
 /// Cubics: below the first knot, between each two, above the last.
 pub(super) struct Pieces {
     pub knots: Vec<f64>,
-    /// Of powers of x − knot; the knot is the one before, but for the first piece.
+    /// Coefficients of powers of x − knot; the knot before the piece, except for the first piece.
     pub cubics: Vec<[f64; 4]>,
     /// Whether the spline repeats beyond its first and last knots.
     pub periodic: bool,
-    /// See [`Spline::rounding_jumps`](super::Spline::rounding_jumps), of orders 0 to 3.
+    /// See [`Spline::rounding_jumps`](super::Spline::rounding_jumps), for orders 0 to 3.
     pub jumps: OnceLock<[Option<f64>; 4]>,
 }
 
@@ -34,13 +34,14 @@ impl Pieces {
         Self::with_second(points, &second, false)
     }
 
-    /// As natural ones, but m₀ = mₙ₋₁, and what holds at inner knots holds there: the matrix is cyclic. With m₀ known
-    /// the others solve a tridiagonal system, of which m₀ is a factor on the right side; the row of knot 0 gives it.
+    /// As for natural ones, but m₀ = mₙ₋₁, and the equation of inner knots holds there too: the matrix is cyclic. Given
+    /// m₀, the others solve a tridiagonal system with m₀ as a factor on the right side; the row of knot 0 determines
+    /// it.
     pub fn periodic(points: &[(f64, f64)]) -> Self {
         let n = points.len();
         let widths: Vec<f64> = points.windows(2).map(|pair| pair[1].0 - pair[0].0).collect();
         let slopes: Vec<f64> = points.windows(2).zip(&widths).map(|(pair, h)| (pair[1].1 - pair[0].1) / h).collect();
-        // Rows of knots 1 to n − 2, each with its right sides: of the data, and of m₀ = mₙ₋₁.
+        // Rows of knots 1 to n − 2, each with two right sides: of the data, and of m₀ = mₙ₋₁.
         let (mut diagonal, mut data, mut of_first) = (vec![1.0; n], vec![0.0; n], vec![0.0; n]);
         for i in 1..n - 1 {
             let factor = if i > 1 { widths[i - 1] / diagonal[i - 1] } else { 0.0 };
@@ -54,7 +55,7 @@ impl Pieces {
             of_data[i] = (data[i] - widths[i] * of_data[i + 1]) / diagonal[i];
             per_first[i] = (of_first[i] - widths[i] * per_first[i + 1]) / diagonal[i];
         }
-        // hₙ₋₂ mₙ₋₂ + 2 (hₙ₋₂ + h₀) m₀ + h₀ m₁ = 6 (slope₀ − slopeₙ₋₂), m₁ = mₙ₋₁ where there are two points.
+        // hₙ₋₂ mₙ₋₂ + 2 (hₙ₋₂ + h₀) m₀ + h₀ m₁ = 6 (slope₀ − slopeₙ₋₂), m₁ = mₙ₋₁ for two points.
         let (h, last) = (widths[0], widths[n - 2]);
         let right = 6.0 * (slopes[0] - slopes[n - 2]) - last * of_data[n - 2] - h * of_data[1];
         let first = if n > 2 { right / (2.0 * (last + h) + last * per_first[n - 2] + h * per_first[1]) } else { 0.0 };
@@ -63,7 +64,7 @@ impl Pieces {
         Self::with_second(points, &second, true)
     }
 
-    /// From second derivatives at the knots.
+    /// The pieces from second derivatives at the knots.
     pub fn with_second(points: &[(f64, f64)], second: &[f64], periodic: bool) -> Self {
         let n = points.len();
         let mut cubics = Vec::with_capacity(n + 1);

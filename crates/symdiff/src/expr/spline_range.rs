@@ -1,28 +1,28 @@
-//! The pieces of a spline over a range, and how far they are from joining.
+//! The pieces of a spline over a range, and the jumps between them.
 
 use super::spline::Spline;
 use crate::eval::interval::Interval;
 use crate::tuning::TUNING;
 
-/// A cubic and where it holds.
+/// A cubic and its range.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SplinePiece {
-    /// Ascending with x.
+    /// Number of the piece, ascending with x.
     pub number: i64,
-    /// The cubic is one of x less this.
+    /// Origin of the cubic's powers.
     pub knot: Interval,
-    /// The knot behind it; all numbers behind the last piece.
+    /// The knot behind it; all numbers for the last piece.
     pub end: Interval,
     /// Coefficients, lowest first.
     pub cubic: [f64; 4],
-    /// Within which it holds, rounded outward.
+    /// Lower end of its range, rounded outward.
     pub from: f64,
-    /// See `from`.
+    /// Upper end of its range, rounded outward.
     pub to: f64,
 }
 
 impl Spline {
-    /// The pieces that hold somewhere in a range, ascending; none where they are more than `most`.
+    /// The pieces with a part in a range, ascending; empty if they are more than `most`, or the range is too far away.
     pub(crate) fn pieces_over(self, range: Interval, most: usize) -> Vec<SplinePiece> {
         let (knots, _, is_periodic) = self.pieces();
         if !range.magnitude().is_finite() {
@@ -35,7 +35,7 @@ impl Spline {
             if periods.iter().any(|count| count.abs() > TUNING.most_periods) {
                 return Vec::new();
             }
-            // One more period on either side, as quotients are rounded.
+            // One more period on either side, since quotients are rounded.
             ((periods[0] as i64 - 1) * per_period, (periods[1] as i64 + 2) * per_period - 1)
         } else {
             let [first, last] = [range.lower().next_down(), range.upper()];
@@ -70,10 +70,10 @@ impl Spline {
         SplinePiece { number, knot, end, cubic: cubics[index + 1], from: knot.lower(), to: end.upper() }
     }
 
-    /// Sum of the jumps of the derivative of this order at all knots of a period, which rounding of the cubics leaves;
-    /// `None` for a derivative that jumps.
+    /// Sum of the jumps, over the knots of a period, that rounding of the cubics leaves in the derivative of this
+    /// order; `None` for a derivative that jumps.
     pub fn rounding_jumps(self, order: u8) -> Option<f64> {
-        // Beyond that all cubics' derivatives are zero.
+        // All derivatives of higher order are zero.
         let known = self.jumps().get_or_init(|| [0, 1, 2, 3].map(|order| self.sum_of_jumps(order)));
         known.get(order as usize).copied().unwrap_or(Some(0.0))
     }

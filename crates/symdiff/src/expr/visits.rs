@@ -1,14 +1,14 @@
-//! What a search through the graph has seen.
+//! Nodes visited by a search through the graph.
 
 use super::node::Expr;
 
-/// The nodes that one derivative has to look at, in memory that serves many.
+/// The nodes that one derivative has to visit, in memory that serves many.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Visits {
-    /// For each node, the last derivative that looked at it.
+    /// For each node, the last derivative that visited it.
     seen_by: Vec<u32>,
     derivative: u32,
-    /// Nodes that wait to be looked at,
+    /// Nodes to be visited,
     pub stack: Vec<Expr>,
     /// and those that were found.
     pub found: Vec<Expr>,
@@ -26,7 +26,7 @@ impl Visits {
         self.found.clear();
     }
 
-    /// Whether this derivative has not looked at a node yet.
+    /// Marks a node as visited; returns whether this derivative had not visited it.
     pub fn is_first(&mut self, expr: Expr) -> bool {
         std::mem::replace(&mut self.seen_by[expr.index()], self.derivative) != self.derivative
     }

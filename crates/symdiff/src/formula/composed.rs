@@ -1,4 +1,4 @@
-//! Functions of the language that are made of others.
+//! Functions of the language that are composed of others.
 
 use std::ops::Range;
 
@@ -6,7 +6,7 @@ use super::parser::Parser;
 use super::{SyntaxError, Term};
 use crate::expr::{Binary, Unary};
 
-/// A function that is made of others.
+/// A function that is composed of others.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Composed {
     /// −floor(−x)
@@ -15,13 +15,13 @@ pub enum Composed {
     Round,
     /// a − b floor(a/b)
     Mod,
-    /// a under a condition, else b.
+    /// a under a condition, otherwise b.
     If,
     /// min(max(x, low), high)
     Clamp,
     /// u² (3 − 2u), u = (x − a)/(b − a) between 0 and 1.
     Smoothstep,
-    /// An angle's number of degrees.
+    /// An angle in degrees, as a number.
     Degrees,
 }
 
@@ -37,7 +37,7 @@ impl Composed {
 }
 
 impl Parser<'_> {
-    /// The function's terms; there are as many arguments as it takes.
+    /// Adds the function's terms; the number of arguments is its arity.
     pub(super) fn composed(
         &mut self,
         function: Composed,
@@ -84,7 +84,7 @@ impl Parser<'_> {
         })
     }
 
-    /// An angle; a bare number is an angle in degrees.
+    /// An angle in degrees; an error for a bare number.
     fn degrees(&mut self, x: usize, span: Range<usize>) -> Result<usize, SyntaxError> {
         let within = |place: &Range<usize>| span.start <= place.start && place.end <= span.end;
         let bare = |(term, place): &(Term, Range<usize>)| {

@@ -1,4 +1,4 @@
-//! Comparisons and what joins them. A condition is a number: 1 where it is true, 0 elsewhere.
+//! Comparisons and their connectives. A condition is a number: 1 where it is true, 0 elsewhere.
 
 use std::ops::Range;
 
@@ -95,7 +95,7 @@ impl Parser<'_> {
         found
     }
 
-    /// A term of two others, from the first one's beginning up to here.
+    /// A term of two others, from the beginning of the first one up to here.
     fn joined(&mut self, function: Binary, a: usize, b: usize) -> usize {
         let span = self.whole(a, b);
         self.push(Term::Binary(function, a, b), span)
@@ -135,7 +135,7 @@ impl Parser<'_> {
         truth
     }
 
-    /// `a` under a condition, else `b`. What a comparison compares decides by itself.
+    /// `a` under a condition, otherwise `b`. For a comparison, its difference decides directly.
     pub(super) fn choice(&mut self, condition: usize, a: usize, b: usize, span: Range<usize>) -> usize {
         let (condition, first, second) = match self.terms[condition].0 {
             Term::Binary(Binary::Select, difference, _) if self.truths.contains(&condition) => {

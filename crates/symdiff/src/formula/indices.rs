@@ -1,4 +1,4 @@
-//! Numbers that a piece of text is repeated with: `{i - 1}` in names, `1..N` of ranges.
+//! Indices of repeated text: `{i - 1}` in names, `1..N` of ranges.
 
 use std::fmt;
 use std::ops::{Range, RangeInclusive};
@@ -6,7 +6,7 @@ use std::ops::{Range, RangeInclusive};
 use super::SyntaxError;
 use crate::tuning::TUNING;
 
-/// What a name stands for where something is repeated.
+/// Value of an index in repeated text.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Index {
     /// A whole number, which formulas may compute with.
@@ -24,10 +24,10 @@ impl fmt::Display for Index {
     }
 }
 
-/// What a name stands for; nothing where it is no index.
+/// Value of an index by its name; `None` for other names.
 pub type Lookup<'l> = dyn Fn(&str) -> Option<Index> + 'l;
 
-/// The text with the values of what stands in braces.
+/// Replaces the contents of braces in a text by their values.
 ///
 /// # Errors
 /// An unclosed brace, or braces around something that is not a whole number.
@@ -67,7 +67,7 @@ pub fn range(text: &str, lookup: &Lookup) -> Result<RangeInclusive<i64>, SyntaxE
     Ok(first..=last)
 }
 
-/// The value of a sum of products of whole numbers.
+/// The value of a sum of products of integers.
 ///
 /// # Errors
 /// Not an index.
@@ -178,7 +178,7 @@ impl Whole<'_> {
 }
 
 impl SyntaxError {
-    /// The same where the text begins later.
+    /// The same error for a text that begins at `start`.
     pub(super) fn behind(self, start: usize) -> Self {
         Self { span: start + self.span.start..start + self.span.end, ..self }
     }

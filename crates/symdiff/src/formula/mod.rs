@@ -14,10 +14,9 @@
 //! name       = letter { letter | digit | "_" } { "." name }
 //! ```
 //!
-//! In a repeated formula, and where the caller knows indices, names may have whole numbers in braces: `leg_{i -
-//! 1}.force`.
+//! In a repeated formula, and if the caller knows indices, names may have integers in braces: `leg_{i - 1}.force`.
 //!
-//! `pi` is the number; every other name, `t` included, is for the caller to resolve, and so are units.
+//! `pi` is the number; the caller resolves every other name, `t` included, and units.
 
 mod composed;
 mod conditions;
@@ -108,7 +107,7 @@ pub const FUNCTIONS: [NamedFunction; 23] = [
     ),
 ];
 
-/// A function as formulas call it.
+/// A function as named in formulas.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct NamedFunction {
     /// Its name.
@@ -117,7 +116,7 @@ pub struct NamedFunction {
     pub function: Function,
     /// Its arguments.
     pub arguments: &'static str,
-    /// The arguments for which it has a value.
+    /// The arguments for which it is defined.
     pub domain: &'static str,
     /// Its value in words.
     pub value: &'static str,
@@ -134,8 +133,8 @@ impl NamedFunction {
         Self { name, function, arguments, domain, value }
     }
 
-    /// Whether nothing else may have the name. Of `floor`, `round` and the like, only a call is one: models have a
-    /// floor, too.
+    /// Whether nothing else may have the name. Names like `floor` and `round` are functions only in a call, since
+    /// models may have a floor, too.
     pub fn is_reserved(&self) -> bool {
         !matches!(self.function, Function::Composed(_) | Function::Unary(Unary::Floor))
     }
@@ -144,11 +143,11 @@ impl NamedFunction {
 /// A function of the language.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Function {
-    /// Of one argument.
+    /// Function of one argument.
     Unary(Unary),
-    /// Of two arguments.
+    /// Function of two arguments.
     Binary(Binary),
-    /// Made of several.
+    /// Function composed of several.
     Composed(Composed),
 }
 
@@ -157,7 +156,7 @@ pub enum Function {
 pub enum Term {
     /// A literal number.
     Number(f64),
-    /// A literal number with a unit: its value, and what the caller's reader of units says of its dimension.
+    /// A literal number with a unit: its value, and the mark of the caller's reader of units, such as its dimension.
     Quantity(f64, u64),
     /// A name, dots included.
     Name(String),
@@ -165,9 +164,9 @@ pub enum Term {
     Unary(Unary, usize),
     /// A function of two terms.
     Binary(Binary, usize, usize),
-    /// The difference of two terms of which only the sign is asked for.
+    /// The difference of two terms of which only the sign matters.
     Compared(usize, usize),
-    /// An angle's number of degrees.
+    /// An angle in degrees, as a number.
     Degrees(usize),
 }
 
@@ -182,7 +181,7 @@ impl Term {
         first.into_iter().chain(second)
     }
 
-    /// The same with its operands at other positions.
+    /// The same term with its operands at other positions.
     fn moved(&self, place: impl Fn(usize) -> usize) -> Self {
         match self {
             Self::Unary(function, a) => Self::Unary(*function, place(*a)),
@@ -194,7 +193,7 @@ impl Term {
     }
 }
 
-/// A parsed formula: its nodes, operands first, the result last, each with its place (bytes) in the text.
+/// A parsed formula: its nodes, operands first, the result last, each with its location (bytes) in the text.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Formula {
     terms: Vec<(Term, Range<usize>)>,
@@ -208,7 +207,7 @@ pub struct SyntaxError {
     pub message: String,
     /// Bytes of the text that are wrong; empty at its end.
     pub span: Range<usize>,
-    /// What would be right, where that is known.
+    /// A correction, if known.
     pub help: Option<String>,
 }
 
@@ -216,15 +215,15 @@ impl Formula {
     /// Reads a formula.
     ///
     /// # Errors
-    /// The first syntax error, with its place.
+    /// The first syntax error, with its location.
     pub fn parse(text: &str) -> Result<Self, SyntaxError> {
         Self::parse_with(text, &Vocabulary::default())
     }
 
-    /// Reads a formula in which there are tables and units.
+    /// Reads a formula with tables and units.
     ///
     /// # Errors
-    /// The first syntax error, with its place.
+    /// The first syntax error, with its location.
     pub fn parse_with(text: &str, vocabulary: &Vocabulary) -> Result<Self, SyntaxError> {
         Ok(Self { terms: parser::terms(text, vocabulary)? })
     }
@@ -239,7 +238,7 @@ impl Formula {
         Self { terms: vec![(Term::Name(name.to_owned()), 0..0)] }
     }
 
-    /// `function(self, other)`; places are those in either's own text.
+    /// `function(self, other)`; locations are those in either's own text.
     #[must_use]
     pub fn combined(&self, function: Binary, other: &Self) -> Self {
         let shift = self.terms.len();
@@ -251,7 +250,7 @@ impl Formula {
         Self { terms }
     }
 
-    /// The same with other formulas instead of some names. What comes from these has the name's place.
+    /// The same formula with some names replaced by formulas, whose nodes have the name's location.
     #[must_use]
     pub fn with_names(&self, formula: impl Fn(&str) -> Option<Self>) -> Self {
         let mut terms: Vec<(Term, Range<usize>)> = Vec::with_capacity(self.terms.len());
@@ -282,7 +281,7 @@ impl Formula {
         Self { terms }
     }
 
-    /// The argument of a function that is all of the formula.
+    /// The argument of a function, if the whole formula is its call.
     pub fn argument_of(&self, function: Unary) -> Option<Self> {
         match self.terms.split_last() {
             Some(((Term::Unary(outer, argument), _), before))
@@ -294,7 +293,7 @@ impl Formula {
         }
     }
 
-    /// The number, if the formula is a literal one (a sign in front is allowed).
+    /// The number, if the formula is a literal one (with or without a sign).
     pub fn as_number(&self) -> Option<f64> {
         match self.terms.as_slice() {
             [(Term::Number(value), _)] => Some(*value),
@@ -308,12 +307,12 @@ impl Formula {
         &self.terms
     }
 
-    /// The formula that one of its nodes is.
+    /// The formula of one of its nodes.
     #[must_use]
     pub fn part(&self, node: usize) -> Self {
         let mut is_in = vec![false; self.terms.len()];
         is_in[node] = true;
-        // Operands stand before their results.
+        // Operands come before their results.
         for index in (0..=node).rev() {
             if let (true, term) = (is_in[index], &self.terms[index].0) {
                 term.operands().for_each(|operand| is_in[operand] = true);
@@ -328,7 +327,7 @@ impl Formula {
         Self { terms }
     }
 
-    /// Every use of a name with its place.
+    /// Every use of a name with its location.
     pub fn names(&self) -> impl Iterator<Item = (&str, Range<usize>)> {
         self.terms.iter().filter_map(|(term, span)| match term {
             Term::Name(name) => Some((name.as_str(), span.clone())),
@@ -336,10 +335,10 @@ impl Formula {
         })
     }
 
-    /// The formula as an expression, names given by `resolve`.
+    /// Builds the formula as an expression, with the names given by `resolve`.
     ///
     /// # Errors
-    /// Whatever `resolve` says.
+    /// Those of `resolve`.
     pub fn build<'g, E>(
         &self,
         builder: &'g Builder,

@@ -12,7 +12,7 @@ use crate::tuning::TUNING;
 /// Words that join conditions.
 const WORDS: [&str; 3] = ["and", "or", "not"];
 
-/// The terms of a formula with their places.
+/// The terms of a formula with their locations.
 ///
 /// # Errors
 /// The first syntax error.
@@ -36,7 +36,7 @@ pub(super) struct Parser<'t> {
     pub(super) terms: Vec<(Term, Range<usize>)>,
     /// Terms that are 1 or 0.
     pub(super) truths: FxHashSet<usize>,
-    /// Of the sums around the place, the innermost last.
+    /// Indices of the sums around the position, the innermost last.
     pub(super) indices: Vec<(String, i64)>,
 }
 
@@ -95,7 +95,7 @@ impl Parser<'_> {
         }
     }
 
-    /// Whether digits stand on both sides of the next character.
+    /// Whether there are digits on both sides of the next character.
     fn is_between_digits(&self) -> bool {
         let is_digit = |c: char| c.is_ascii_digit();
         let (before, after) = self.text.split_at(self.position);
@@ -225,7 +225,7 @@ impl Parser<'_> {
         }
     }
 
-    /// A number with the unit that may stand behind it.
+    /// A number with an optional unit behind it.
     fn measured(&mut self, number: f64, span: Range<usize>) -> Result<usize, SyntaxError> {
         let end = self.position;
         let starts_unit = |c: char| c.is_alphabetic() || c == '°';
@@ -255,7 +255,7 @@ impl Parser<'_> {
             let part = &rest[length..];
             let end = part.find(|c: char| !(c.is_alphanumeric() || c == '_')).unwrap_or(part.len());
             length += end;
-            // A dot belongs to the name only if a name goes on behind it.
+            // A dot belongs to the name only if a name continues behind it.
             let mut after = rest[length..].chars();
             match (after.next(), after.next()) {
                 (Some('.'), Some(c)) if c.is_alphabetic() || c == '_' || c == '{' && braces => length += 1,

@@ -20,12 +20,12 @@ impl Parser<'_> {
         own.or_else(|| self.vocabulary.names?.index(name))
     }
 
-    /// What braces and ranges may use.
+    /// Integers that braces and ranges may use.
     fn whole_number(&self, name: &str) -> Option<Index> {
         self.index(name).or_else(|| self.vocabulary.names?.count(name).map(Index::Number))
     }
 
-    /// The number of an index.
+    /// The number of an index, if the name is one.
     pub(super) fn index_of(&self, name: &str, span: &Range<usize>) -> Result<Option<f64>, SyntaxError> {
         match self.index(name) {
             None => Ok(None),
@@ -38,7 +38,7 @@ impl Parser<'_> {
         }
     }
 
-    /// A name as the caller knows it.
+    /// A name, replaced by the caller's full one.
     pub(super) fn name(&mut self, name: &str, span: Range<usize>) -> usize {
         let full = self.vocabulary.names.map_or_else(|| name.to_owned(), |names| names.full(name));
         self.push(Term::Name(full), span)
@@ -59,7 +59,7 @@ impl Parser<'_> {
         Ok(self.name(&filled, span))
     }
 
-    /// What stands behind `sum`: an index, its range and a formula, which is read once for each value.
+    /// Reads the arguments of `sum`: an index, its range and a formula, which is read once for each value.
     pub(super) fn repeated(&mut self, start: usize) -> Result<usize, SyntaxError> {
         self.nested(|parser| {
             parser.take('(');
@@ -86,7 +86,7 @@ impl Parser<'_> {
                 });
             }
             parser.close()?;
-            // A range has a first number.
+            // A range is not empty.
             sum.ok_or_else(|| parser.unexpected("a formula"))
         })
     }

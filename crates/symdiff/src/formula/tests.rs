@@ -45,7 +45,7 @@ fn functions_of_steps_and_pieces_are_those_of_other_languages() {
     }
 }
 
-/// With `x` for the name `pi`, as `deg` of a bare number is refused.
+/// With a value `x` for the name `pi`, since `deg` of a bare number is refused.
 fn built(text: &str, x: f64) -> f64 {
     let builder = Builder::new();
     let text = text.replace("pi", "x");

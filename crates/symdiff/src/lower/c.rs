@@ -6,16 +6,16 @@ use super::tape::{Op, Operands, Tape, TapePart};
 use crate::expr::{Binary, Spline, Unary};
 use crate::tuning::TUNING;
 
-/// Writes tapes over one memory `r` as C, and keeps the tables that they name.
+/// Writes tapes over one memory `r` as C, and collects the tables that they name.
 #[derive(Debug, Default)]
 pub struct CWriter {
     splines: Vec<Spline>,
 }
 
 impl CWriter {
-    /// A tape as a function `name` of a memory `r`: each statement is the same operation on doubles that an evaluator
-    /// does; functions are those of C's library, and `mb_select`, `mb_sign`, `mb_min`, `mb_max` and `mb_spline`, which
-    /// [`helpers`](Self::helpers) defines. A long tape is several functions that the one of this name calls.
+    /// A tape as a function `name` of a memory `r`: each statement is the same operation on doubles as in an evaluator;
+    /// functions are those of C's library, and `mb_select`, `mb_sign`, `mb_min`, `mb_max` and `mb_spline`, which
+    /// [`helpers`](Self::helpers) defines. A long tape becomes several functions, which the one of this name calls.
     pub fn function(&mut self, name: &str, tape: &Tape) -> String {
         let pieces = self.pieces(tape);
         let function =
@@ -30,7 +30,7 @@ impl CWriter {
         text
     }
 
-    /// Statements of a tape, in pieces between its regions that a compiler does not take long for.
+    /// Statements of a tape, split between its regions into pieces that compile quickly.
     fn pieces(&mut self, tape: &Tape) -> Vec<String> {
         let (mut pieces, mut text) = (Vec::new(), String::new());
         let (mut index, mut ends, mut statements) = (0, Vec::new(), 0);
@@ -46,7 +46,7 @@ impl CWriter {
             match part {
                 TapePart::Region(region) => {
                     let (not, end) = (if region.is_elsewhere() { "" } else { "!" }, region.end());
-                    // A condition that is no number is positive, as everywhere.
+                    // A NaN condition is positive, as everywhere.
                     let _ = writeln!(text, "    if ({not}(r[{}] <= 0.0)) {{", region.condition);
                     ends.push(end);
                 }
@@ -104,7 +104,7 @@ impl CWriter {
         format!("{name}(r[{a}])")
     }
 
-    /// What the statements call, and the tables that they name; stands before them.
+    /// Definitions of the functions that statements call, and of the tables that they name; to be written before them.
     pub fn helpers(&self) -> String {
         let mut text = HELPERS.to_owned();
         if self.splines.is_empty() {

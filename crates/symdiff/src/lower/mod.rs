@@ -1,8 +1,9 @@
 //! Lowering: expressions → tapes, split by *when values can change*.
 //!
 //! Inputs carry a stage: 0 changes least often, `shared` (the last) most often. A node's stage is the highest of its
-//! operands. The caller asks for kernels, each with outputs; whatever a kernel needs of a lower stage is computed by
-//! that stage's own tape and kept in a slot of its own, so that nothing is evaluated more often than it can change.
+//! operands. The caller requests kernels, each with outputs; values of a lower stage that a kernel needs are computed
+//! by that stage's own tape and stored in a slot of their own, so that nothing is evaluated more often than it can
+//! change.
 
 mod c;
 mod node_table;
@@ -27,7 +28,7 @@ use self::schedule::{Pending, in_regions};
 use self::stages::UNKNOWN;
 use crate::expr::{Binary, Choice, Expr, Graph, Node, Unary};
 
-/// What a kernel computes: expressions, each with the register that it must end up in or `None` for any.
+/// Outputs of a kernel: expressions, each with the register that it must end up in or `None` for any.
 pub type Outputs = Vec<(Expr, Option<u32>)>;
 
 /// Tapes that share one memory.
@@ -35,9 +36,9 @@ pub type Outputs = Vec<(Expr, Option<u32>)>;
 pub struct Lowered {
     /// One tape for each shared stage, to be run when an input of that stage (or a lower one) has changed.
     pub stages: Vec<Tape>,
-    /// One tape for each kernel asked for.
+    /// One tape for each requested kernel.
     pub kernels: Vec<Tape>,
-    /// Where each kernel's outputs stand after it has run.
+    /// Registers of each kernel's outputs after it has run.
     pub outputs: Vec<Vec<u32>>,
     /// Registers that hold numbers, to be set once.
     pub constants: Vec<(u32, f64)>,
@@ -53,7 +54,7 @@ pub fn lower(graph: &Graph, inputs: &[Input], shared: usize, reserved: u32, kern
     lower_where(graph, inputs, shared, reserved, kernels, &FxHashMap::default())
 }
 
-/// The same, where some outputs (by their kernel) matter only under a guard: elsewhere they are anything.
+/// Lowers likewise; some outputs (by their kernel) matter only under a guard, and are arbitrary elsewhere.
 ///
 /// # Panics
 /// As [`lower`].
@@ -70,7 +71,7 @@ pub fn lower_where(
     let mut lowering =
         Lowering { graph, stages, register_of: NodeTable::new(graph.len()), constants: Vec::new(), next: reserved };
     inputs.iter().for_each(|input| lowering.register_of.insert(input.symbol, input.register));
-    // From the last stage down: what a stage needs of the ones below is pinned there.
+    // From the last stage down: each stage pins the values that it needs of those below.
     let mut pinned: Vec<FxHashSet<Expr>> = vec![FxHashSet::default(); shared];
     let mut bodies = Vec::with_capacity(kernels.len());
     for (kernel, outputs) in kernels.iter().enumerate() {
@@ -90,7 +91,7 @@ pub fn lower_where(
         }
         stage_bodies.push((body, wanted));
     }
-    // All kept values have their registers now; every tape may use what lies above as scratch.
+    // All stored values have their registers now; every tape may use those above as scratch.
     let mut lowered = Lowered::default();
     let mut targets = Vec::with_capacity(kernels.len());
     for outputs in kernels {
@@ -131,8 +132,8 @@ impl Lowering<'_> {
         })
     }
 
-    /// A register in which a kernel's output outlives it: its own where it has one that the kernel does not replace,
-    /// else a new one.
+    /// A register in which a kernel's output outlives it: its own if it has one that the kernel does not replace,
+    /// otherwise a new one.
     fn keep(&mut self, expr: Expr, replaced: &FxHashSet<u32>) -> u32 {
         match self.register_of.get(expr) {
             Some(register) if !replaced.contains(&register) => register,
@@ -144,7 +145,7 @@ impl Lowering<'_> {
     }
 
     /// The nodes that one tape has to compute for `wanted`, operands first (depth first, so that values used together
-    /// stands together). What belongs to a lower stage is noted in `pinned`, constants get their registers.
+    /// are near each other). Values of a lower stage are added to `pinned`; constants get their registers.
     fn body(&mut self, stage: usize, wanted: &[Expr], pinned: &mut [FxHashSet<Expr>]) -> Vec<Expr> {
         let mut order = Vec::new();
         let mut done = NodeSet::new(self.graph.len());
@@ -186,8 +187,8 @@ impl Lowering<'_> {
         order
     }
 
-    /// One tape: fused, in regions, grouped, with registers. `wanted` are the nodes that are used outside, some under
-    /// a guard only.
+    /// Emits one tape: fused, in regions, grouped, with registers. `wanted` are the nodes that are used outside, some
+    /// under a guard only.
     fn emit(
         &self,
         body: &[Expr],
@@ -203,8 +204,8 @@ impl Lowering<'_> {
         allocate(&in_regions(self.graph.len(), pending, &regions), targets, &self.register_of, self.next)
     }
 
-    /// Nodes → operations: a product that a single sum needs becomes part of it, and sine and cosine of one argument
-    /// are found together.
+    /// Nodes → operations: a product needed by a single sum becomes part of it, and sine and cosine of one argument are
+    /// computed together.
     fn fuse(&self, body: &[Expr], wanted: &NodeSet, regions: &Regions) -> Vec<Pending> {
         let nodes = self.graph.len();
         let inside = NodeSet::of(nodes, body.iter().copied());
@@ -242,14 +243,14 @@ impl Lowering<'_> {
             {
                 let Choice { condition, halves: [(wanted, a), (elsewhere, b)] } = choice;
                 match regions.inner(region, Guard { condition, elsewhere: false }) {
-                    // What holds elsewhere is put down first; the region, where it is not skipped, chooses.
+                    // The value elsewhere is written first; the region, if it is not skipped, chooses.
                     Some(inner) if only_here(wanted) && only_here(elsewhere) => {
                         [wanted, elsewhere].into_iter().for_each(|half| _ = absorbed.insert(half));
                         pending.push(Pending::new(Op::Copy, [b; 3], 1, elsewhere).within(region));
                         pending.push(Pending::new(Op::Select, [condition, a, elsewhere], 3, expr).within(inner));
                     }
                     _ => {
-                        // A half may be needed as such, or have been computed at an earlier stage.
+                        // A half may itself be needed, or computed at an earlier stage.
                         let [a, b] = choice.halves.map(|(half, value)| if only_here(half) { value } else { half });
                         let halves = [wanted, elsewhere].into_iter().filter(|&half| only_here(half));
                         halves.for_each(|half| _ = absorbed.insert(half));
@@ -265,9 +266,9 @@ impl Lowering<'_> {
         pending
     }
 
-    /// The operation of a node; `None` where another's writes its value too, or none has to. `product` gives the
-    /// factors of what may become part of a sum, which is then `absorbed`; `circular` has the sine and cosine of each
-    /// argument.
+    /// The operation of a node; `None` if another one writes its value too, or none is needed. `product` gives the
+    /// factors of a product that may become part of a sum, which is then `absorbed`; `circular` has the sine and cosine
+    /// of each argument.
     fn instruction(
         &self,
         expr: Expr,

@@ -1,21 +1,21 @@
-//! Tables by node: what hash maps would be, where nearly all nodes of a graph are looked up.
+//! Tables by node, instead of hash maps, since nearly all nodes of a graph are looked up.
 
 use crate::expr::Expr;
 
-/// Small numbers of some of a graph's nodes. Memory is touched where a number is put down.
+/// Small numbers of some of a graph's nodes. Memory is touched only for the nodes with a number.
 #[derive(Clone, Debug)]
 pub(crate) struct NodeTable {
-    /// One more than the number; 0 where there is none.
+    /// The number plus one; 0 if absent.
     numbers: Vec<u32>,
 }
 
 impl NodeTable {
-    /// For a graph of `nodes` nodes.
+    /// An empty table for a graph of `nodes` nodes.
     pub fn new(nodes: usize) -> Self {
         Self { numbers: vec![0; nodes] }
     }
 
-    /// Nodes of the graph.
+    /// Number of nodes of the graph.
     pub fn nodes(&self) -> usize {
         self.numbers.len()
     }
@@ -42,12 +42,12 @@ impl NodeTable {
 pub(crate) struct NodeSet(Vec<bool>);
 
 impl NodeSet {
-    /// None of a graph of `nodes` nodes.
+    /// The empty set, for a graph of `nodes` nodes.
     pub fn new(nodes: usize) -> Self {
         Self(vec![false; nodes])
     }
 
-    /// These of a graph of `nodes` nodes.
+    /// The set of these nodes, for a graph of `nodes` nodes.
     pub fn of(nodes: usize, members: impl IntoIterator<Item = Expr>) -> Self {
         let mut set = Self::new(nodes);
         members.into_iter().for_each(|expr| set.0[expr.index()] = true);
@@ -58,7 +58,7 @@ impl NodeSet {
         self.0[expr.index()]
     }
 
-    /// Whether the node is new to the set.
+    /// Adds a node; returns whether it is new to the set.
     pub fn insert(&mut self, expr: Expr) -> bool {
         !std::mem::replace(&mut self.0[expr.index()], true)
     }

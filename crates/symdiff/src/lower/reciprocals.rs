@@ -1,16 +1,15 @@
-//! Divisions → products with reciprocals, where a reciprocal serves several of them or is computed less often than
-//! they are.
+//! Divisions → products with reciprocals, if a reciprocal serves several of them or changes less often than they do.
 //!
-//! A division takes many times as long as a product. x/y is x·(1/y) where y changes less often than x, so that 1/y is
-//! found at y's stage (for a number, when the tape is made), and where something else is divided by y too. That rounds
-//! twice where a division rounds once.
+//! A division takes many times as long as a product. x/y becomes x·(1/y) if y changes less often than x, so that 1/y is
+//! computed at y's stage (for a number, when the tape is made), or if y divides something else too. That rounds twice
+//! instead of once.
 
 use rustc_hash::FxHashMap;
 
 use super::stages::{Input, Stages};
 use crate::expr::{Binary, Expr, Graph, Node};
 
-/// `roots` with reciprocals in place of divisions; symbols change at the stages of `inputs`.
+/// `roots` with reciprocals instead of divisions; symbols change at the stages of `inputs`.
 pub fn with_reciprocals(graph: &mut Graph, inputs: &[Input], roots: &[Expr]) -> Vec<Expr> {
     let mut stages = Stages::new(inputs);
     stages.update(graph);

@@ -1,7 +1,7 @@
 //! Regions: nodes of a tape that are used only under a condition, grouped together.
 //!
-//! A node belongs to the innermost region that all its uses have in common. The value of a `Select` (`SelectElse`)
-//! node is used in a region of that condition, everything else where the node that uses it stands.
+//! A node belongs to the innermost region that contains all its uses. The value of a `Select` (`SelectElse`) node is
+//! used in a region of that condition, every other operand in the region of the node that uses it.
 
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BinaryHeap};
@@ -12,19 +12,19 @@ use super::tape::Guard;
 use crate::expr::{Binary, Expr, Graph, Node, Unary};
 use crate::tuning::TUNING;
 
-/// Index of a region; 0 is no region at all.
+/// Index of a region; 0 is outside of all regions.
 pub(crate) type RegionId = usize;
 pub(crate) const OUTSIDE: RegionId = 0;
 
 #[derive(Clone, Copy, Debug)]
 struct Nested {
     within: RegionId,
-    /// None outside.
+    /// `None` for the outside.
     guard: Option<Guard>,
     depth: usize,
 }
 
-/// The regions of one tape, and which node belongs to which.
+/// The regions of one tape, with their nodes.
 #[derive(Debug)]
 pub(crate) struct Regions {
     nested: Vec<Nested>,
@@ -32,7 +32,7 @@ pub(crate) struct Regions {
 }
 
 impl Regions {
-    /// Of the nodes of `body`, children first, of which `wanted` are used from outside, some only under a guard.
+    /// The regions of the nodes of `body`, children first; `wanted` are used from outside, some only under a guard.
     pub(crate) fn new(graph: &Graph, body: &[Expr], wanted: impl Iterator<Item = (Expr, Option<Guard>)>) -> Self {
         let mut regions =
             Self { nested: vec![Nested { within: OUTSIDE, guard: None, depth: 0 }], of: FxHashMap::default() };
@@ -95,12 +95,12 @@ impl Regions {
             .find(|&region| self.nested[region].within == within && self.nested[region].guard == Some(guard))
     }
 
-    /// Whether there are any.
+    /// Whether there are no regions.
     pub(crate) fn is_empty(&self) -> bool {
         self.nested.iter().all(|region| region.guard.is_none())
     }
 
-    /// What opens a region; nothing does outside.
+    /// Guard of a region; `None` outside.
     pub(crate) fn guard(&self, region: RegionId) -> Option<Guard> {
         self.nested[region].guard
     }
@@ -110,7 +110,7 @@ impl Regions {
         self.outward(region).filter_map(|region| self.nested[region].guard).map(|guard| guard.condition)
     }
 
-    /// The regions to be left, and those to be entered, from one to another.
+    /// The number of regions to leave, and the regions to enter, on the way from one to another.
     pub(crate) fn way(&self, from: RegionId, to: RegionId) -> (usize, Vec<RegionId>) {
         let common = self.common(from, to);
         let mut entered: Vec<RegionId> = self.outward(to).take_while(|&region| region != common).collect();
@@ -118,7 +118,7 @@ impl Regions {
         (self.nested[from].depth - self.nested[common].depth, entered)
     }
 
-    /// A region, the one around it, and so on, but not the outside.
+    /// A region, the one around it, and so on, without the outside.
     fn outward(&self, region: RegionId) -> impl Iterator<Item = RegionId> {
         std::iter::successors(Some(region), |&region| Some(self.nested[region].within))
             .take_while(|&region| region != OUTSIDE)
@@ -151,7 +151,7 @@ impl Regions {
         })
     }
 
-    /// Notes a use; whether that moved the node.
+    /// Adds a use; returns whether it moved the node.
     fn use_in(&mut self, expr: Expr, region: RegionId) -> bool {
         let Some(&before) = self.of.get(&expr) else {
             self.of.insert(expr, region);
@@ -162,13 +162,13 @@ impl Regions {
         common != before
     }
 
-    /// Hands the nodes of small regions to the regions around them.
+    /// Moves the nodes of small regions to the regions around them.
     fn dissolve_small(&mut self, body: &[Expr]) {
         let mut sizes = vec![0; self.nested.len()];
         for &expr in body {
             self.outward(self.of(expr)).for_each(|region| sizes[region] += 1);
         }
-        // Regions stand behind those that they are in.
+        // Regions come after those that contain them.
         let mut kept: Vec<RegionId> = vec![OUTSIDE];
         for (region, &size) in sizes.iter().enumerate().skip(1) {
             let Nested { within, .. } = self.nested[region];
@@ -219,7 +219,7 @@ pub(crate) fn order(
             }
             continue;
         }
-        // Into the region whose first instruction stands first, or out of this one.
+        // Into the inner region with the earliest instruction, or out of this one.
         ready.retain(|_, places| !places.is_empty());
         let inner = ready.iter().filter(|&(&region, _)| regions.common(region, current) == current);
         match inner.min_by_key(|(_, places)| places.peek().map(|first| first.0)) {

@@ -1,4 +1,4 @@
-//! Which register each value of a tape takes.
+//! Allocation of registers to the values of a tape.
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
@@ -7,9 +7,9 @@ use super::schedule::Step;
 use super::tape::{Item, Op, Operands, Tape};
 use crate::expr::Expr;
 
-/// Registers by linear scan: a scratch register is free again after its value's last use. A target is written at once
-/// unless this tape still reads what stands there; then it is copied at the end. `register_of` tells where values
-/// stand that are there before or stay; scratch registers begin at `first`.
+/// Allocates registers by linear scan: a scratch register is free again after its value's last use. A target is written
+/// at once unless this tape still reads its old value; then it is copied at the end. `register_of` has the registers of
+/// values that exist before or stay; scratch registers begin at `first`.
 pub(crate) fn allocate(steps: &[Step], targets: &[(Expr, u32)], register_of: &NodeTable, first: u32) -> Tape {
     let nodes = register_of.nodes();
     let Uses { last_use, mut reads_register, computed } = Uses::of(steps, register_of, first);
@@ -61,7 +61,7 @@ pub(crate) fn allocate(steps: &[Step], targets: &[(Expr, u32)], register_of: &No
         registers.release(read.filter(|&read| last_use_of.get(read) == Some(index as u32)));
         let [sine, cosine] = instruction.writes;
         if instruction.op == Op::SinCos {
-            // The one that is not wanted takes a register for this operation alone.
+            // An unwanted one takes a register for this operation alone.
             let written = [sine, cosine].map(|write| write.map(|expr| registers.place(expr)));
             let [d, b] = written.map(|register| register.unwrap_or_else(|| registers.take()));
             items.push(Item::Do(instruction.op, Operands { a, b, c, d }));
@@ -77,15 +77,15 @@ pub(crate) fn allocate(steps: &[Step], targets: &[(Expr, u32)], register_of: &No
     Tape::new(items)
 }
 
-/// Where values stand, and which scratch registers are free.
+/// Registers of values, and the free scratch registers.
 struct Registers<'a> {
-    /// Of values that are there before or stay.
+    /// Registers of values that exist before or stay.
     register_of: &'a NodeTable,
     shared: &'a Shared,
-    /// Of values that were computed, by the first of those that share a register.
+    /// Registers of computed values, by the last of those that share a register.
     place_of: NodeTable,
     free: Vec<u32>,
-    /// The first scratch register, and the first that was never taken.
+    /// The first scratch register, and the first one that was never taken.
     first: u32,
     next: u32,
 }
@@ -101,7 +101,7 @@ impl Registers<'_> {
         self.find(expr).expect("an operand is a symbol, a constant, stored, or computed before")
     }
 
-    /// The register for a value, a free one where it has none yet.
+    /// The register of a value, a new one if it has none yet.
     fn place(&mut self, expr: Expr) -> u32 {
         self.find(expr).unwrap_or_else(|| {
             let fresh = self.take();
@@ -117,11 +117,11 @@ impl Registers<'_> {
         })
     }
 
-    /// Frees the scratch registers of values that one operation reads as the last.
+    /// Frees the scratch registers of values whose last reader is one operation.
     fn release(&mut self, values: impl Iterator<Item = Expr>) {
         let already_free = self.free.len();
         for value in values {
-            // An operand may stand there twice.
+            // An operand may occur twice.
             if let Some(old) = self.place_of.get(value)
                 && old >= self.first
                 && !self.free[already_free..].contains(&old)
@@ -132,12 +132,12 @@ impl Registers<'_> {
     }
 }
 
-/// What a list of steps reads and writes.
+/// Values and registers that a list of steps reads and writes.
 #[derive(Debug)]
 struct Uses {
     /// The last step that reads a value.
     last_use: NodeTable,
-    /// By register below the scratch registers: whether a value is read that stands there before.
+    /// By register below the scratch registers: whether its value from before is read.
     reads_register: Vec<bool>,
     /// Values that are written.
     computed: NodeSet,
@@ -166,8 +166,8 @@ impl Uses {
     }
 }
 
-/// Copies from register to register as if all happened at once: what another copy overwrites is put aside first, in a
-/// `fresh` register.
+/// Copies from register to register as if all happened at once: a value that another copy overwrites is saved first, in
+/// a `fresh` register.
 fn copy_at_once(copies: Vec<(u32, u32)>, mut fresh: impl FnMut() -> u32, items: &mut Vec<Item>) {
     let overwritten: FxHashSet<u32> = copies.iter().map(|&(_, register)| register).collect();
     let copy = |from: u32, to: u32| Item::Do(Op::Copy, Operands { a: from, b: from, c: from, d: to });
@@ -183,12 +183,11 @@ fn copy_at_once(copies: Vec<(u32, u32)>, mut fresh: impl FnMut() -> u32, items: 
     items.extend(last);
 }
 
-/// Values that take one register after the other: what holds elsewhere, and then the choice that a region makes in its
-/// place.
+/// Values that share a register successively: the value elsewhere, and then the choice that a region makes.
 #[derive(Debug, Default)]
 struct Shared {
     next: FxHashMap<Expr, Expr>,
-    /// Copies that are not needed, because their value already stands where the choice is made.
+    /// Copies that are not needed, because their value is already in the register of the choice.
     needless: FxHashSet<usize>,
 }
 
@@ -206,7 +205,7 @@ impl Shared {
                 (Op::Select, Some(chosen)) => {
                     let Some(&(value, copied_at)) = put_down.get(&last) else { continue };
                     shared.next.insert(last, chosen);
-                    // The choice overwrites the value, which nobody may look for afterwards.
+                    // The choice overwrites the value, which must not be read afterwards.
                     if may_share(value)
                         && last_use.get(value).is_some_and(|last| (last as usize) < index)
                         && !shared.next.contains_key(&value)
@@ -221,7 +220,7 @@ impl Shared {
         shared
     }
 
-    /// The value that all others of its register become at last.
+    /// The last of the values that share a register.
     fn root(&self, mut expr: Expr) -> Expr {
         while let Some(&next) = self.next.get(&expr) {
             expr = next;

@@ -12,10 +12,10 @@ use crate::tuning::TUNING;
 #[derive(Clone, Debug)]
 pub(crate) struct Pending {
     pub op: Op,
-    /// Operands; the first `count` count.
+    /// Operands; the first `count` are used.
     pub reads: [Expr; 3],
     pub count: usize,
-    /// Result, and for `SinCos` the sine and the cosine, of which one may not be wanted.
+    /// Result, or for `SinCos` the sine and the cosine, one of which may be unwanted.
     pub writes: [Option<Expr>; 2],
     pub region: RegionId,
 }
@@ -56,7 +56,7 @@ impl Step {
     }
 }
 
-/// Brings together what belongs to one region, and equal operations within it.
+/// Groups instructions by region, and equal operations within it.
 pub(crate) fn in_regions(nodes: usize, pending: Vec<Pending>, regions: &Regions) -> Vec<Step> {
     let mut grouping = Grouping { writer: NodeTable::new(nodes) };
     if regions.is_empty() {
@@ -88,22 +88,22 @@ pub(crate) fn in_regions(nodes: usize, pending: Vec<Pending>, regions: &Regions)
     steps
 }
 
-/// Who writes what an instruction reads.
+/// The writers of an instruction's operands.
 fn written_by<'w>(one: &'w Pending, writer: &'w NodeTable) -> impl Iterator<Item = usize> + 'w {
     one.read().filter_map(|read| writer.get(read)).map(|writer| writer as usize)
 }
 
-/// The instructions of a window that read what another writes.
+/// The instructions of a window that read results of others.
 struct Readers {
-    /// Writer after writer, ascending.
+    /// Readers of each writer in turn, writers ascending.
     list: Vec<usize>,
-    /// By writer, where its readers begin; and the end.
+    /// By writer, the start of its readers in `list`; and the end.
     begin: Vec<usize>,
 }
 
 impl Readers {
     fn of(window: &[Pending], writer: &NodeTable) -> Self {
-        // Two places further on: what counts readers of a writer becomes where they begin, and then where they end.
+        // Shifted by two: the counts of readers become their starts, and then, by filling, their ends.
         let mut begin = vec![0; window.len() + 2];
         window.iter().flat_map(|one| written_by(one, writer)).for_each(|writer| begin[writer + 2] += 1);
         (2..begin.len()).for_each(|place| begin[place] += begin[place - 1]);
@@ -125,20 +125,20 @@ impl Readers {
 /// Instructions of a window that are ready, operation by operation, first come, first served.
 struct Ready {
     queues: Vec<Queue>,
-    /// By instruction, the one after it in its queue.
+    /// By instruction, its successor in its queue.
     after: Vec<Option<usize>>,
 }
 
 /// Ready instructions of one operation.
 struct Queue {
     op: Op,
-    /// The first and the last, where there are any.
+    /// The first and the last, if there are any.
     ends: Option<(usize, usize)>,
     count: usize,
 }
 
 impl Ready {
-    /// None, of a window of `window` instructions.
+    /// No instructions yet, for a window of `window`.
     fn of(window: usize) -> Self {
         Self { queues: Vec::new(), after: vec![None; window] }
     }
@@ -156,7 +156,7 @@ impl Ready {
         }
     }
 
-    /// Takes out all of the operation that has most, of several the one that came first; the first of them.
+    /// Removes all instructions of the most frequent operation, the first one of several; returns their first.
     fn take_most(&mut self) -> Option<usize> {
         let counts = self.queues.iter_mut().enumerate();
         let (_, most) = counts.max_by_key(|(place, queue)| (queue.count, usize::MAX - place))?;
@@ -165,15 +165,15 @@ impl Ready {
     }
 }
 
-/// Brings equal operations together.
+/// Groups equal operations.
 struct Grouping {
-    /// Where in the current window a value is written.
+    /// Index in the current window of the instruction that writes a value.
     writer: NodeTable,
 }
 
 impl Grouping {
-    /// Brings equal operations together within stretches of a fixed number of instructions: of those that are ready,
-    /// always all of the operation that has most.
+    /// Groups equal operations within stretches of a fixed number of instructions: always all ready instructions of the
+    /// most frequent operation.
     fn group(&mut self, pending: Vec<Pending>) -> Vec<Pending> {
         let mut grouped = Vec::with_capacity(pending.len());
         for window in pending.chunks(TUNING.window_of_grouping) {

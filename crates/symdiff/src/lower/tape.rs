@@ -1,12 +1,12 @@
-//! Tapes: programs of three-address instructions over registers, in one line but for regions that may be skipped.
+//! Tapes: straight-line programs of three-address instructions over registers, with regions that may be skipped.
 //!
-//! What stands in a region only matters where a condition is positive (or only where it is not). A region is skipped
-//! where no sample of the memory wants it. That changes no result: a value read outside a region is chosen, sample by
-//! sample, by [`Op::Select`] and its kin, which take nothing of a region from a sample that does not want it.
+//! The values of a region only matter where a condition is positive (or only where it is not). A region is skipped if
+//! no sample of the memory wants it. That changes no result: a value read outside a region is chosen, sample by sample,
+//! by [`Op::Select`] and its kin, which take nothing of a region from a sample that does not want it.
 
 use crate::expr::{Binary, Expr, Unary};
 
-/// What an instruction does with the registers a, b, c.
+/// Operation of an instruction on the registers a, b, c.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Op {
     /// d = a
@@ -28,7 +28,8 @@ pub enum Op {
 }
 
 impl Op {
-    /// Registers that an instruction of this operation names: d, then its operands (and, for `SinCos`, also writes).
+    /// The number of registers in an instruction of this operation: d, then its operands (and, for `SinCos`, also
+    /// writes).
     pub(crate) const fn arity(self) -> usize {
         match self {
             Self::Copy | Self::Unary(_) => 2,
@@ -38,21 +39,21 @@ impl Op {
     }
 }
 
-/// Registers of one instruction; what an operation does not use repeats `a`.
+/// Registers of one instruction; unused operands repeat `a`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Operands {
     /// Register of the first operand.
     pub a: u32,
-    /// Register of the second operand, or of the first where there is none.
+    /// Register of the second operand, or of the first if there is none.
     pub b: u32,
-    /// Register of the third operand, or of the first where there is none.
+    /// Register of the third operand, or of the first if there is none.
     pub c: u32,
     /// Register of the result.
     pub d: u32,
 }
 
 impl Operands {
-    /// From what a tape holds of them: d, a, and then as many as the operation has.
+    /// From the registers on a tape: d, a, and then further operands of the operation.
     #[inline(always)]
     pub(crate) fn of(registers: &[u32]) -> Self {
         let a = registers[1];
@@ -61,7 +62,7 @@ impl Operands {
     }
 }
 
-/// When a value is wanted: where the condition is positive, or else where it is not.
+/// Condition under which a value is wanted: where `condition` is positive, or where it is not.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Guard {
     /// The condition.
@@ -97,7 +98,7 @@ impl Region {
         self.end
     }
 
-    /// On to its end where nobody wants it.
+    /// Moves to its end if no sample wants it.
     #[inline(always)]
     pub fn skip_unless(&self, wanted: bool, index: &mut usize) {
         if !wanted {
@@ -106,12 +107,12 @@ impl Region {
     }
 }
 
-/// Instructions of one operation that stand together (one dispatch serves them all), or the beginning of a region.
+/// Consecutive instructions of one operation (one dispatch serves them all), or the beginning of a region.
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum Piece {
     Run {
         op: Op,
-        /// Of the tape's operands, the first of the run.
+        /// Index of the run's first register in the tape's operands.
         start: usize,
         count: usize,
     },
@@ -127,21 +128,21 @@ pub(crate) enum TapePart<'t> {
 /// Registers of instructions of one operation, [`Op::arity`] of each.
 #[derive(Clone, Copy)]
 pub(crate) struct Instructions<'t> {
-    /// Those of the run, and of all that follow.
+    /// Registers of the run, and of all that follow.
     registers: &'t [u32],
     count: usize,
 }
 
 impl<'t> Instructions<'t> {
-    /// Instructions of this operation, the run's.
+    /// Instructions of this operation, which is the run's.
     pub fn each(self, op: Op) -> impl Iterator<Item = Operands> {
         self.registers.chunks_exact(op.arity()).take(self.count).map(Operands::of)
     }
 
-    /// Instructions of operations of `A` registers, without the division that tells how many there are.
+    /// Instructions of operations of `A` registers, without the division that computes their number.
     ///
     /// # Safety
-    /// The run's operation has that many.
+    /// The run's operation has `A` registers.
     #[inline(always)]
     pub unsafe fn of<const A: usize>(self) -> impl DoubleEndedIterator<Item = Operands> + use<'t, A> {
         debug_assert!(self.count * A <= self.registers.len(), "a tape has all registers of its runs");
@@ -151,7 +152,7 @@ impl<'t> Instructions<'t> {
     }
 }
 
-/// What a tape is made of.
+/// Input of [`Tape::new`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Item {
     Do(Op, Operands),
@@ -161,11 +162,11 @@ pub(crate) enum Item {
     Leave,
 }
 
-/// A program. Every register it names is below [`Tape::registers`], which is what the evaluators rely on.
+/// A program. Every register in it is below [`Tape::registers`], on which the evaluators rely.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Tape {
     pieces: Vec<Piece>,
-    /// Registers of all instructions, no more of each than it has: a large mechanism's tape is read from far away.
+    /// Registers of all instructions, only those that each has: a large mechanism's tape is read from distant memory.
     operands: Vec<u32>,
     instructions: usize,
     registers: usize,
@@ -218,7 +219,7 @@ impl Tape {
         self.instructions
     }
 
-    /// Number of instructions that are run where all conditions are positive, or where none is.
+    /// Number of instructions that run if all conditions are positive, or if none is.
     pub fn len_where(&self, positive: bool) -> usize {
         let (mut index, mut count) = (0, 0);
         while let Some(part) = self.part(&mut index) {
@@ -232,7 +233,7 @@ impl Tape {
         count
     }
 
-    /// Number of instructions of the operations that are asked for.
+    /// Number of instructions of the selected operations.
     pub fn count(&self, of: impl Fn(Op) -> bool) -> usize {
         let runs = self.pieces.iter().filter_map(|piece| match piece {
             Piece::Run { op, count, .. } if of(*op) => Some(*count),
@@ -256,14 +257,14 @@ impl Tape {
         self.registers
     }
 
-    /// What stands at a place, which moves on to the next.
+    /// The part at an index, which moves on to the next.
     #[inline(always)]
     pub(crate) fn part(&self, index: &mut usize) -> Option<TapePart<'_>> {
         let piece = self.pieces.get(*index)?;
         *index += 1;
         Some(match piece {
             Piece::Run { op, start, count } => {
-                // SAFETY: `new` adds the operands that begin there, and takes none away.
+                // SAFETY: `new` adds the operands that begin there, and never removes any.
                 let registers = unsafe { self.operands.get_unchecked(*start..) };
                 TapePart::Run(op, Instructions { registers, count: *count })
             }

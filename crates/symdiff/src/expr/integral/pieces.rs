@@ -25,7 +25,7 @@ impl Graph {
         Some(self.substitute(&[whole], &FxHashMap::from_iter([(by, within)]))[0])
     }
 
-    /// The same where conditions are joined: `and` is their product, `or` is a + b − a b.
+    /// The same for joined conditions: `and` is their product, `or` is a + b − a b.
     fn integral_under_joined(
         &mut self,
         function: Binary,
@@ -69,8 +69,8 @@ impl Graph {
         }
     }
 
-    /// Whether an expression of conditions is 0 or 1 whichever of them hold; `None` where it is of anything else, or
-    /// of many.
+    /// Whether an expression of conditions is 0 or 1 for all their combinations; `None` if it contains anything else,
+    /// or too many conditions.
     fn is_truth(&self, of: Expr) -> Option<bool> {
         let mut conditions = Vec::new();
         let mut pending = vec![of];
@@ -92,7 +92,7 @@ impl Graph {
         (conditions.len() <= TUNING.most_conditions).then(|| held.into_iter().all(|value| value == 0.0 || value == 1.0))
     }
 
-    /// The value of an expression of conditions of which those hold whose bits are set.
+    /// The value of an expression of conditions, of which those hold whose bits in `held` are set.
     fn truth_where(&self, of: Expr, conditions: &[Expr], held: usize) -> f64 {
         let value = |expr| self.truth_where(expr, conditions, held);
         if let Some(index) = conditions.iter().position(|&condition| condition == of) {
@@ -107,10 +107,10 @@ impl Graph {
         }
     }
 
-    /// ∫ of a polynomial of a straight line that is kept within limits.
+    /// ∫ of a polynomial of a straight line that is limited.
     pub(super) fn integral_of_limited(&mut self, of: Expr, by: Expr) -> Option<Expr> {
         let is_limited = |node: Node| matches!(node, Node::Binary(Binary::Max | Binary::Min, ..));
-        // Children are before parents: the last is under no other.
+        // Children come before parents: the last one is not below any other.
         let limited = self.moving(of, by).into_iter().filter(|&expr| is_limited(self.node(expr))).max()?;
         let (line, limits) = self.limited_line(limited, by)?;
         let slope = self.steady_slope(line, by)?;
@@ -135,8 +135,8 @@ impl Graph {
         Some(self.div(whole, slope))
     }
 
-    /// What `max(u, a)`, `min(u, b)` or both of them in either order keep within limits, and the limits: below, above.
-    /// Of two limits both have to be numbers, the lower one first.
+    /// The argument of `max(u, a)`, `min(u, b)` or both of them in either order, and its limits: below, above. Two
+    /// limits both have to be numbers, the lower one first.
     fn limited_line(&self, of: Expr, by: Expr) -> Option<(Expr, [Option<Expr>; 2])> {
         let parts = |expr: Expr| match self.node(expr) {
             Node::Binary(function @ (Binary::Max | Binary::Min), a, b) => {
