@@ -1,4 +1,4 @@
-//! What this package's own binary, tests and benches use of the rooms. Not part of the library: it may change with any
+//! Parts of the rooms for this package's own binary, tests and benches. Not part of the library: it may change with any
 //! version.
 
 pub mod assemble {

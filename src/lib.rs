@@ -6,10 +6,10 @@ mod api;
 mod cli;
 
 pub use api::{Axis, Band, Error, Model, ModelBuilder, Output, Samples, Study, StudyResult, Sweep, Value, write_cost};
-/// Proofs of certified bounds, as [`results::Bounds::certified`] has them, and their checker, which shares no code with
-/// what makes them.
+/// Proofs of certified bounds, as in [`results::Bounds::certified`], and their checker, which shares no code with their
+/// construction.
 pub use mbint_certificate::certificate;
-/// Results as data: what `summary.json` holds, allocations, statistics and studies of costs.
+/// Results as data: contents of `summary.json`, allocations, statistics and studies of costs.
 pub use mbint_study::results;
 #[doc(inline)]
 pub use methods::Method;
@@ -25,7 +25,7 @@ pub use results::{
 #[doc(inline)]
 pub use syntax::Diagnostics;
 
-// Rooms of the crates below keep their names here.
+// Rooms of the crates below are reachable under their names here.
 use mbint_engine::{assemble, c_code, compile, reduce, simulate};
 use mbint_export::{export, overview};
 use mbint_language::{grammar, syntax};

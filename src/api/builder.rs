@@ -11,7 +11,7 @@ const SECTIONS: [&str; 7] = ["parameters", "bodies", "joints", "effects", "initi
 #[derive(Clone, Debug)]
 pub struct ModelBuilder {
     name: String,
-    /// Of each section its entries.
+    /// Entries of each section.
     sections: [Vec<(String, Value)>; SECTIONS.len()],
     /// Keys with one value: `simulation`, `bounds`, ….
     keys: Vec<(String, Value)>,
@@ -52,7 +52,7 @@ impl ModelBuilder {
         self.entry(3, name, effect)
     }
 
-    /// A coordinate or velocity that is kept at the start, such as `crank.angle`.
+    /// A coordinate or velocity that is prescribed at the start, such as `crank.angle`.
     #[must_use]
     pub fn initial(self, name: &str, value: impl Into<Value>) -> Self {
         self.entry(4, name, value)
@@ -83,7 +83,7 @@ impl ModelBuilder {
         self
     }
 
-    /// The model as a file would have it.
+    /// The model as the text of a file.
     pub fn to_yaml(&self) -> String {
         let mut text = String::from("model: ");
         quote(&self.name, &mut text);
@@ -111,7 +111,7 @@ impl ModelBuilder {
     /// Checks the model.
     ///
     /// # Errors
-    /// [`Error::Model`]: everything that is wrong, with places in the text of [`to_yaml`](Self::to_yaml).
+    /// [`Error::Model`]: everything that is wrong, with locations in the text of [`to_yaml`](Self::to_yaml).
     pub fn build(&self) -> Result<Model, Error> {
         Model::from_yaml_str(&self.name, &self.to_yaml())
     }

@@ -1,4 +1,4 @@
-//! What can go wrong between a file and its bounds.
+//! Errors between a file and its bounds.
 
 use std::fmt;
 
@@ -7,11 +7,11 @@ use crate::model::{UnknownScene, WitnessError};
 use crate::study::{AllocateError, CostError, DataError, DesignError, FitError, GradientError, RunError, VerifyError};
 use crate::syntax::{Code, Coded, Diagnostics};
 
-/// Why there is no model, or nothing of it could be run.
+/// Reasons why there is no model, or nothing of it could be run.
 #[derive(thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
-    /// The model has errors: all of them, each with its place.
+    /// The model has errors: all of them, each with its location.
     #[error("{0}")]
     Model(#[source] Diagnostics),
     /// The model does not have the scene.
@@ -23,10 +23,10 @@ pub enum Error {
     /// The model has nothing that could be allocated.
     #[error("{0}")]
     Unsuitable(String),
-    /// The reference of a study of costs cannot be had.
+    /// The reference of a study of costs cannot be computed.
     #[error(transparent)]
     Cost(Box<CostError>),
-    /// A point to be sampled, by its index, does not have a finite value for each of the uncertain parameters.
+    /// A point to be sampled, given by its index, does not have a finite value for each of the uncertain parameters.
     #[error("point {index} needs a finite value for each of {}", .parameters.join(", "))]
     Point {
         /// Index of the point.
@@ -37,7 +37,7 @@ pub enum Error {
     /// Functions and values are not those of the model.
     #[error(transparent)]
     Witness(#[from] WitnessError),
-    /// A setting of a study, as its time step, is outside of its range.
+    /// A setting of a study, such as its time step, is outside of its range.
     #[error("{0}")]
     Setting(String),
     /// It was asked to stop before there was a result.
@@ -63,7 +63,7 @@ pub enum Error {
     Write(#[from] ExportError),
 }
 
-/// As it is displayed, so that `fn main() -> Result<(), Error>` prints what people can read.
+/// The display text, so that `fn main() -> Result<(), Error>` prints a readable message.
 impl fmt::Debug for Error {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         fmt::Display::fmt(self, formatter)
@@ -71,8 +71,8 @@ impl fmt::Debug for Error {
 }
 
 impl Error {
-    /// The code of the kind of mistake, e.g. `E0901`, of which `mbint explain` has a page: of a model with errors that
-    /// of its first; none at an interruption.
+    /// The code of the kind of mistake, e.g. `E0901`, of which `mbint explain` has a page: that of the first error for
+    /// a model with errors; `None` after an interruption.
     pub fn code(&self) -> Option<&'static str> {
         let code = match self {
             Self::Model(diagnostics) => diagnostics.code(),

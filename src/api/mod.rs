@@ -1,4 +1,4 @@
-//! The front door: a [`Model`], a [`Study`] of it, and what the study yields.
+//! The front door: a [`Model`], a [`Study`] of it, and the results of the study.
 
 mod builder;
 mod error;

@@ -18,7 +18,7 @@ pub struct Model {
     warnings: Diagnostics,
 }
 
-/// Where a model came from; it is read again when a parameter is replaced.
+/// Source of a model; it is read again when a parameter is replaced.
 #[derive(Clone, Debug)]
 enum Origin {
     File { path: PathBuf, root: Option<PathBuf> },
@@ -29,11 +29,11 @@ enum Origin {
 #[derive(Clone, Debug, Default)]
 struct Asked {
     overrides: Vec<Override>,
-    /// Of the scenes, the one that was chosen.
+    /// The chosen scene.
     scene: Option<String>,
-    /// Outputs in place of the model's: names and formulas.
+    /// Outputs instead of the model's: names and formulas.
     outputs: Option<Vec<(String, String)>>,
-    /// Functions that its excitations are.
+    /// Functions of its excitations.
     witness: Option<Witness>,
 }
 
@@ -46,7 +46,7 @@ impl Model {
         Self::read(Origin::File { path: path.as_ref().to_owned(), root: None }, Asked::default())
     }
 
-    /// Like [`Model::from_file`], where the model may also name files of another folder or below: robots, tables,
+    /// Like [`Model::from_file`]; in addition, the model may name files of another folder or below: robots, tables,
     /// meshes, included files.
     ///
     /// # Errors
@@ -56,7 +56,8 @@ impl Model {
         Self::read(Origin::File { path, root }, Asked::default())
     }
 
-    /// Reads a model from a text. Error messages call it `name`; files that it names are looked for beside `name`.
+    /// Reads a model from a text. Error messages call it `name`; the files that it names are searched for next to
+    /// `name`.
     ///
     /// # Errors
     /// [`Error::Model`]: everything that is wrong with the text.
@@ -85,20 +86,20 @@ impl Model {
         Self::read(self.origin, Asked { scene: Some(name.to_owned()), ..self.asked })
     }
 
-    /// The same model with other outputs than its own, each a name and a formula: `&[("x", "slider.x")]`. A scene with
-    /// outputs has those, too.
+    /// The same model with other outputs than its own, each a name and a formula: `&[("x", "slider.x")]`. Outputs of a
+    /// scene are added.
     ///
     /// # Errors
-    /// [`Error::Model`]: a name or a formula is wrong, or a requirement needs one of the outputs that are left out.
+    /// [`Error::Model`]: a name or a formula is wrong, or a requirement needs one of the omitted outputs.
     pub fn observing(self, outputs: &[(&str, &str)]) -> Result<Self, Error> {
         let outputs = outputs.iter().map(|&(name, formula)| (name.to_owned(), formula.to_owned())).collect();
         Self::read(self.origin, Asked { outputs: Some(outputs), ..self.asked })
     }
 
-    /// The same model with the functions and the values of a witness (`witness.NAME.csv` of a run): its text.
+    /// The same model with the functions and the values of a witness, given as its text (`witness.NAME.csv` of a run).
     ///
     /// # Errors
-    /// [`Error::Witness`]: it is no witness, or not one of this model.
+    /// [`Error::Witness`]: the text is not a witness, or not one of this model.
     pub fn replaying(self, witness: &str) -> Result<Self, Error> {
         Self::read(self.origin, Asked { witness: Some(Witness::parse(witness)?), ..self.asked })
     }
@@ -122,7 +123,7 @@ impl Model {
         Ok(Self { origin, asked, description, scenes, warnings })
     }
 
-    /// Its name; of a scene, `MODEL/SCENE`.
+    /// Its name; for a scene, `MODEL/SCENE`.
     pub fn name(&self) -> &str {
         &self.description.name
     }
@@ -132,7 +133,7 @@ impl Model {
         self.scenes.iter().map(String::as_str)
     }
 
-    /// Names of its outputs, each with its SI unit (empty where dimensionless or unknown).
+    /// Names of its outputs, each with its SI unit (empty if dimensionless or unknown).
     pub fn outputs(&self) -> impl Iterator<Item = (&str, &str)> {
         self.description.outputs.iter().map(|output| (output.name.as_str(), output.unit.as_str()))
     }
@@ -145,32 +146,32 @@ impl Model {
         })
     }
 
-    /// How long its motion lasts, s; 0 without a motion.
+    /// Duration of its motion, s; 0 without a motion.
     pub fn duration(&self) -> f64 {
         self.description.simulation.duration
     }
 
-    /// Warnings: the model can be used, but something in it is probably not meant.
+    /// Warnings: the model can be used, but something in it is probably not intended.
     pub fn warnings(&self) -> &Diagnostics {
         &self.warnings
     }
 
-    /// Builds and assembles the model, and fits its methods: all that a run does before it simulates.
+    /// Builds and assembles the model, and fits its methods: all steps of a run before it simulates.
     ///
     /// # Errors
-    /// [`Error::Run`]: why a run would not begin.
+    /// [`Error::Run`]: the reason why a run would not begin.
     pub fn check(&self) -> Result<(), Error> {
         study::ready(&self.description)?;
         Ok(())
     }
 
-    /// A study of the model, with the methods that its `bounds:` ask for until others are chosen.
+    /// A study of the model, with the methods that its `bounds:` request until others are chosen.
     pub fn study(&self) -> Study<'static> {
         Study::new(self.description.clone())
     }
 
-    /// Runs a study for each combination of values of some parameters. `ask` chooses methods and options, as
-    /// `|study| study.chebyshev(3)`; `|study| study` takes the model's.
+    /// Runs a study for each combination of values of some parameters. `ask` chooses methods and options, such as
+    /// `|study| study.chebyshev(3)`; `|study| study` uses the model's.
     ///
     /// # Errors
     /// [`Error::Model`]: the model does not have a parameter, or a value does not fit it. [`Error::Run`]: a point is
@@ -183,7 +184,7 @@ impl Model {
             for (parameter, value) in Axis::settings(axes, &values) {
                 model = model.with(&parameter, value)?;
             }
-            // A combination without a motion leaves the others.
+            // A combination without a motion does not end the others.
             let summary = match ask(model.study()).run() {
                 Ok(result) => Some(result.summary().clone()),
                 Err(Error::Run(error)) if !matches!(error, RunError::Costly(_) | RunError::Memory(_)) => None,
@@ -202,8 +203,8 @@ impl Model {
         Ok(study::gradient(&self.description, &Options::default()).map_err(Box::new)?)
     }
 
-    /// Whether the model integrates as theory tells, in all coordinates that it has: errors against motions that are
-    /// known, since the loads that make them solutions are added.
+    /// Whether the model integrates with the order that theory predicts, in all its coordinates: errors against known
+    /// motions, which added loads make solutions.
     ///
     /// # Errors
     /// [`Error::Run`]: the mechanism cannot be built; [`Error::Verify`]: its analysis takes no steps.
@@ -212,9 +213,9 @@ impl Model {
     }
 }
 
-/// The scene of a name.
+/// The scene with this name.
 fn chosen(reading: Reading, name: &str) -> Result<Description, Error> {
     let mut scenes = reading.chosen(&[name.to_owned()])?;
-    // One name was asked for, and is known.
+    // One known name was asked for.
     Ok(scenes.remove(0).1)
 }

@@ -1,4 +1,4 @@
-//! What a study yields: named outputs with their bands, errors and flags.
+//! Results of a study: named outputs with their bands, errors and flags.
 
 use std::path::{Path, PathBuf};
 
@@ -40,12 +40,12 @@ impl StudyResult {
         self.bounds.outputs.iter().map(Output)
     }
 
-    /// The output of a name, if there is one.
+    /// The output with this name, if there is one.
     pub fn output(&self, name: &str) -> Option<Output<'_>> {
         self.outputs().find(|output| output.name() == name)
     }
 
-    /// Whether every output has, at every time, a band that can be relied on.
+    /// Whether every output has a reliable band at every time.
     pub fn is_reliable(&self) -> bool {
         let rows = 0..self.bounds.times.len();
         let reliable =
@@ -53,7 +53,7 @@ impl StudyResult {
         self.failure().is_none() && rows.into_iter().all(|row| self.outputs().all(|output| reliable(output, row)))
     }
 
-    /// Why the run stopped early, if it did, and up to which time there are results.
+    /// Reason why the run stopped early, if it did, and the time up to which there are results.
     pub fn failure(&self) -> Option<&str> {
         self.summary.failure.as_deref()
     }
@@ -73,17 +73,17 @@ impl StudyResult {
         &self.summary.requirements
     }
 
-    /// Quantiles, yields and contributions, where the model asks for `statistics:`.
+    /// Quantiles, yields and contributions, if the model asks for `statistics:`.
     pub fn statistics(&self) -> Option<&StatisticsResult> {
         self.summary.statistics.as_deref()
     }
 
-    /// Bounds in ten rows to five digits, the text that `mbint snapshot` keeps and compares.
+    /// Bounds in ten rows to five digits, the text that `mbint snapshot` stores and compares.
     pub fn snapshot(&self) -> String {
         export::snapshot_table(&self.bounds)
     }
 
-    /// Writes `bounds.csv`, `summary.json` and plots into a folder, and gives their paths.
+    /// Writes `bounds.csv`, `summary.json` and plots into a folder, and returns their paths.
     ///
     /// # Errors
     /// [`Error::Write`]: the folder or a file cannot be written.
@@ -91,13 +91,13 @@ impl StudyResult {
         Ok(export::write_results(folder.as_ref(), &self.bounds, &self.summary, &Provenance::default(), false, None)?)
     }
 
-    /// The data behind the outputs: what `bounds.csv` has, with all parts of the errors, in SI units.
+    /// The data behind the outputs: those of `bounds.csv`, with all parts of the errors, in SI units.
     pub fn bounds(&self) -> &Bounds {
         &self.bounds
     }
 }
 
-/// Writes the settings of a study of costs, their curves and their plots into a folder, and gives their paths.
+/// Writes the settings of a study of costs, their curves and their plots into a folder, and returns their paths.
 ///
 /// # Errors
 /// [`Error::Write`]: the folder or a file cannot be written.
@@ -111,7 +111,7 @@ impl<'r> Output<'r> {
         &self.0.name
     }
 
-    /// SI unit; empty where dimensionless or unknown.
+    /// SI unit; empty if dimensionless or unknown.
     pub fn unit(self) -> &'r str {
         &self.0.unit
     }
@@ -131,19 +131,19 @@ impl<'r> Output<'r> {
         self.bands().find(|band| band.method() == method)
     }
 
-    /// The first band that can be relied on to the end, or else the first.
+    /// The first band that is reliable to the end, otherwise the first.
     pub fn best(self) -> Option<Band<'r>> {
         foremost(&self.0.bands, |band| !band.error.unresolved.contains(&true)).map(Band)
     }
 }
 
 impl<'r> Band<'r> {
-    /// The method that found it.
+    /// The method of the band.
     pub fn method(self) -> Method {
         self.0.method
     }
 
-    /// Smallest values; NaN behind the end of a run that failed.
+    /// Smallest values; NaN after the end of a run that failed.
     pub fn lower(self) -> &'r [f64] {
         &self.0.lower
     }
@@ -153,12 +153,12 @@ impl<'r> Band<'r> {
         &self.0.upper
     }
 
-    /// Estimated errors of both, of the method and of the time steps together; NaN where unknown.
+    /// Estimated errors of both, of the method and of the time steps together; NaN if unknown.
     pub fn errors(self) -> &'r [f64] {
         &self.0.error.total
     }
 
-    /// Whether the bounds of a row can be relied on.
+    /// Whether the bounds of a row are reliable.
     ///
     /// # Panics
     /// If there is no such row.
@@ -166,7 +166,7 @@ impl<'r> Band<'r> {
         !self.0.error.unresolved[row]
     }
 
-    /// The rows whose bounds cannot be relied on.
+    /// The rows with unreliable bounds.
     pub fn unreliable(self) -> impl Iterator<Item = usize> {
         self.0.error.unresolved.iter().enumerate().filter_map(|(row, unresolved)| unresolved.then_some(row))
     }

@@ -40,13 +40,13 @@ impl Samples {
         &self.times
     }
 
-    /// Names of the outputs, each with its SI unit (empty where dimensionless or unknown).
+    /// Names of the outputs, each with its SI unit (empty if dimensionless or unknown).
     pub fn outputs(&self) -> impl Iterator<Item = (&str, &str)> {
         self.outputs.iter().map(|(name, unit)| (name.as_str(), unit.as_str()))
     }
 
-    /// An output over time in the simulation of a point; NaN where the mechanism cannot be assembled, and from where it
-    /// stops. `None` without such a point or output.
+    /// An output over time in the simulation of a point; NaN if the mechanism cannot be assembled, and after its stop.
+    /// `None` without such a point or output.
     pub fn course(&self, point: usize, output: &str) -> Option<Vec<f64>> {
         let index = self.outputs.iter().position(|(name, _)| name == output)?;
         let size = self.times.len() * self.outputs.len();

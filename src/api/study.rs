@@ -1,4 +1,4 @@
-//! A study: which methods bound a model, and how they run.
+//! A study: the methods that bound a model, and their settings.
 
 use super::{Error, Samples, StudyResult};
 use crate::methods::{BoundsRequest, Certified, Chebyshev, Expand, Method, Proof, Scan, Taylor};
@@ -10,8 +10,8 @@ use crate::study::{
     fit, run,
 };
 
-/// A run of a model in preparation. Methods add up; the first that is chosen replaces those of the model's `bounds:`. A
-/// setting outside of its range is an [`Error::Setting`] of whatever is asked of the study.
+/// A run of a model in preparation. Methods add up; the first chosen one replaces those of the model's `bounds:`. A
+/// setting outside of its range is an [`Error::Setting`] of every question to the study.
 pub struct Study<'a> {
     description: Description,
     options: Options<'a>,
@@ -53,16 +53,16 @@ impl<'a> Study<'a> {
         self
     }
 
-    /// The nominal motion without the model's bounds and statistics; methods that are chosen run beside it.
+    /// The nominal motion without the model's bounds and statistics; chosen methods run in addition.
     #[must_use]
     pub fn nominal(mut self) -> Self {
         self.choose();
-        // Statistics are evaluated on a surrogate, which is a bounding method's.
+        // Statistics are evaluated on a surrogate, which belongs to a bounding method.
         self.description.statistics.asked = false;
         self
     }
 
-    /// The smallest and largest values on a grid with `points` points a parameter: points^k simulations, always too
+    /// The smallest and largest values on a grid with `points` points per parameter: points^k simulations, always too
     /// narrow.
     #[must_use]
     pub fn scan(mut self, points: usize) -> Self {
@@ -85,7 +85,7 @@ impl<'a> Study<'a> {
         self
     }
 
-    /// Chebyshev bounds of whichever degrees meet an error, relative to how far each output ranges over the run.
+    /// Chebyshev bounds of the degrees that meet an error, relative to the range of each output over the run.
     #[must_use]
     pub fn tolerance(mut self, tolerance: f64) -> Self {
         let bounds = self.choose();
@@ -94,15 +94,15 @@ impl<'a> Study<'a> {
         self
     }
 
-    /// The most simulations that the search for bounds within a tolerance takes.
+    /// Most simulations of the search for bounds within a tolerance.
     #[must_use]
     pub fn budget(mut self, simulations: usize) -> Self {
         self.description.bounds.budget.simulations = simulations;
         self
     }
 
-    /// How the ranges of polynomials are found: of those by Taylor, and of those by Chebyshev, which then expands
-    /// outputs in place of coordinates. It is about methods that are chosen already, or else the model's.
+    /// Kind of ranges of polynomials: of those by Taylor, and of those by Chebyshev, which then expands outputs instead
+    /// of coordinates. It applies to the methods chosen before, otherwise to the model's.
     #[must_use]
     pub fn range(mut self, range: RangeKind) -> Self {
         let bounds = &mut self.description.bounds;
@@ -115,14 +115,14 @@ impl<'a> Study<'a> {
         self
     }
 
-    /// These bounding methods only, each as it is asked for already, or else as it is by default.
+    /// Runs these bounding methods only, each as requested before, otherwise with its defaults.
     #[must_use]
     pub fn methods(mut self, methods: &[Method]) -> Self {
         self.options.methods = Some(methods.to_vec());
         self
     }
 
-    /// Notes a setting that is not positive.
+    /// Stores an error if a setting is not positive.
     fn positive(&mut self, what: &str, value: f64) {
         if !(value > 0.0 && value.is_finite()) {
             self.wrong.get_or_insert_with(|| format!("{what} must be positive, but is {value}"));
@@ -145,7 +145,7 @@ impl<'a> Study<'a> {
         self
     }
 
-    /// Time steps of whatever lengths keep their error within a tolerance, relative to the coordinates or to the
+    /// Time steps of variable length that keep their error within a tolerance, relative to the coordinates or to the
     /// model's size.
     #[must_use]
     pub fn step_tolerance(mut self, tolerance: f64) -> Self {
@@ -154,7 +154,7 @@ impl<'a> Study<'a> {
         self
     }
 
-    /// Another time between rows of output, s; of fixed steps a multiple of the step.
+    /// Another time between rows of output, s; a multiple of the step if that is fixed.
     #[must_use]
     pub fn output_step(mut self, seconds: f64) -> Self {
         self.positive("the output step", seconds);
@@ -162,7 +162,7 @@ impl<'a> Study<'a> {
         self
     }
 
-    /// Coordinates by which the motion is described.
+    /// Coordinates of the motion.
     #[must_use]
     pub fn formulation(mut self, formulation: Formulation) -> Self {
         self.description.simulation.formulation = formulation;
@@ -199,29 +199,29 @@ impl<'a> Study<'a> {
         self
     }
 
-    /// Bounds the rest where the mechanism cannot be assembled, or locks, in a part of the parameters' box.
+    /// Bounds the rest if the mechanism cannot be assembled, or locks, in a part of the parameters' box.
     #[must_use]
     pub fn skip_infeasible(mut self) -> Self {
         self.options.skip_infeasible = true;
         self
     }
 
-    /// The time steps' error by all samples with halved steps, instead of a few.
+    /// Estimates the time steps' error by all samples with halved steps, instead of a few.
     #[must_use]
     pub fn certify_steps(mut self) -> Self {
         self.options.certify_time = true;
         self
     }
 
-    /// Runs also what takes more than 20 000 simulations or about a minute, which is refused otherwise
-    /// ([`Error::Run`] with the code `E1003`), and lets a run take much longer than was estimated.
+    /// Also runs studies of more than 20 000 simulations or about a minute, which are refused otherwise ([`Error::Run`]
+    /// with the code `E1003`), and lets a run take much longer than estimated.
     #[must_use]
     pub fn allow_costly(mut self) -> Self {
         self.options.costly = true;
         self
     }
 
-    /// Calls a function now and then with the fraction that is done.
+    /// Calls a function now and then with the finished fraction.
     #[must_use]
     pub fn progress(mut self, progress: &'a (dyn Fn(f64) + Sync)) -> Self {
         self.options.progress = progress;
@@ -235,7 +235,7 @@ impl<'a> Study<'a> {
         self
     }
 
-    /// Asks a function now and then whether to stop. The result has the parts finished by then.
+    /// Polls a function for a stop. The result has the parts finished by then.
     #[must_use]
     pub fn interrupted(mut self, interrupted: &'a (dyn Fn() -> bool + Sync)) -> Self {
         self.options.interrupted = interrupted;
@@ -251,11 +251,11 @@ impl<'a> Study<'a> {
         self.wrong.take().map_or(Ok(self), |message| Err(Error::Setting(message)))
     }
 
-    /// What the model is compiled to, with the study's settings: coordinates, instructions of a step, costs of effects,
-    /// and the reasons.
+    /// The compiled form of the model, with the study's settings: coordinates, instructions of a step, costs of
+    /// effects, and the reasons.
     ///
     /// # Errors
-    /// [`Error::Run`]: it cannot be built or assembled, or a program answers in place of a mechanism.
+    /// [`Error::Run`]: it cannot be built or assembled, or a program answers instead of a mechanism.
     pub fn explain(self) -> Result<Explanation, Error> {
         Ok(explain(&self.checked()?.description)?)
     }
@@ -276,8 +276,8 @@ impl<'a> Study<'a> {
     }
 
     /// The parameters that agree with measured values. `data` is a table: a heading with `time` and names of outputs,
-    /// perhaps with units (`x3 [mm]`) and columns `x3_noise`, then rows. `noise` has bounds for outputs without such a
-    /// column: name and quantity, as `("x3", "0.1 mm")`.
+    /// optionally with units (`x3 [mm]`) and columns `x3_noise`, then rows. `noise` has bounds for outputs without such
+    /// a column: name and quantity, such as `("x3", "0.1 mm")`.
     ///
     /// # Errors
     /// [`Error::Data`]: the table or a bound cannot be used. [`Error::Fit`]: no parameter is uncertain, or the model
@@ -290,8 +290,8 @@ impl<'a> Study<'a> {
         Ok(fit(&own.description, &measurements, &own.options)?)
     }
 
-    /// The nominal values, within the ranges of the model's `design`, that are best in its `objective` with the
-    /// tolerances about them: in every case, or for a share of the production.
+    /// The nominal values, within the ranges of the model's `design`, that are best in its `objective` with their
+    /// tolerances: in every case, or for a share of the production.
     ///
     /// # Errors
     /// [`Error::Unsuitable`]: the model has no `design`. [`Error::Run`]: it cannot be run. [`Error::Design`]: its
@@ -305,7 +305,7 @@ impl<'a> Study<'a> {
         Ok(design(&own.description, DesignOptions { share }, &own.options)?)
     }
 
-    /// Outputs over time at points: for each a value, SI, of each of [`Model::uncertain`](super::Model::uncertain).
+    /// Outputs over time at points: each has a value, SI, for each of [`Model::uncertain`](super::Model::uncertain).
     ///
     /// # Errors
     /// [`Error::Point`]: a point has too few or too many values. [`Error::Run`]: the mechanism cannot be stepped.
@@ -314,8 +314,8 @@ impl<'a> Study<'a> {
         Samples::of(&own.description, points, &own.options)
     }
 
-    /// What accuracy costs in time: settings of all methods, their errors against a reference, and the cheapest for an
-    /// error relative to each output's range. `budget` is in seconds, about.
+    /// Cost of accuracy in time: settings of all methods, their errors against a reference, and the cheapest setting
+    /// for an error relative to each output's range. `budget` is approximate, in seconds.
     ///
     /// # Errors
     /// [`Error::Run`]: the model cannot be run. [`Error::Cost`]: a reference takes too long.
@@ -325,8 +325,8 @@ impl<'a> Study<'a> {
         Ok(cost(&own.description, &CostOptions { tolerance, budget, threads, progress, interrupted })?)
     }
 
-    /// Runs every method. A simulation that fails on its way ends the bounds that need it there:
-    /// see [`StudyResult::failure`].
+    /// Runs every method. A simulation that fails midway ends the bounds that need it there: see
+    /// [`StudyResult::failure`].
     ///
     /// # Errors
     /// [`Error::Run`]: the mechanism cannot be built, assembled or stepped at all, a method would need too many
@@ -337,7 +337,7 @@ impl<'a> Study<'a> {
         Ok(StudyResult::new(bounds, summary))
     }
 
-    /// The checked model that is run.
+    /// The checked model of the run.
     #[doc(hidden)]
     pub fn description(&self) -> &Description {
         &self.description

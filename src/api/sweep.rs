@@ -6,7 +6,7 @@ use super::Error;
 use crate::export::{self, SweepAxis, write_sweep};
 use crate::results::Summary;
 
-/// Values of a parameter, in its unit, and the tolerance that each has.
+/// Values of a parameter, in its unit, and the tolerance of each.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
     name: String,
@@ -23,7 +23,7 @@ impl Axis {
         Self { name: name.to_owned(), values: values.to_vec(), behind: String::new() }
     }
 
-    /// What stands behind each value: a unit, a tolerance, or both, as `"mm ± 1%"`.
+    /// Sets the text after each value: a unit, a tolerance, or both, such as `"mm ± 1%"`.
     #[must_use]
     pub fn with(mut self, behind: &str) -> Self {
         behind.clone_into(&mut self.behind);
@@ -40,7 +40,7 @@ impl Axis {
         self.values.len()
     }
 
-    /// As files and plots name it.
+    /// Its heading in files and plots.
     pub(crate) fn heading(&self) -> SweepAxis {
         let unit = self.behind.split('±').next().unwrap_or_default().trim().to_owned();
         SweepAxis { name: self.name.clone(), unit, values: self.values.clone() }
@@ -68,23 +68,23 @@ impl Axis {
 }
 
 impl Sweep {
-    /// Without points.
+    /// A sweep without points.
     pub(super) fn new(model: &str, axes: &[Axis]) -> Self {
         let axes = axes.iter().map(Axis::heading).collect();
         Self(export::Sweep { model: model.to_owned(), axes, points: Vec::new() })
     }
 
-    /// Adds results; `None` of a run that failed.
+    /// Adds results; `None` for a run that failed.
     pub(super) fn add(&mut self, values: Vec<f64>, summary: Option<Summary>) {
         self.0.points.push(export::SweepPoint { values, summary });
     }
 
-    /// Values of the parameters, one for each, and the run's record there; `None` where it failed.
+    /// Values of the parameters, one for each, with the run's record; `None` if it failed.
     pub fn points(&self) -> impl Iterator<Item = (&[f64], Option<&Summary>)> {
         self.0.points.iter().map(|point| (point.values.as_slice(), point.summary.as_ref()))
     }
 
-    /// Writes `sweep.csv` and a plot of each reduced output into a folder, and gives their paths.
+    /// Writes `sweep.csv` and a plot of each reduced output into a folder, and returns their paths.
     ///
     /// # Errors
     /// [`Error::Write`]: the folder or a file cannot be written.

@@ -5,13 +5,13 @@ use std::fmt::Write;
 /// A number, a text (a name, a formula, a quantity with its unit), a list, or fields by their keys.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Value {
-    /// In the key's SI unit.
+    /// A number in the key's SI unit.
     Number(f64),
-    /// As in a YAML file.
+    /// A text as in a YAML file.
     Text(String),
-    /// In square brackets in a YAML file.
+    /// A list, in square brackets in a YAML file.
     List(Vec<Value>),
-    /// In braces in a YAML file; see [`fields!`](crate::fields).
+    /// Fields, in braces in a YAML file; see [`fields!`](crate::fields).
     Fields(Vec<(String, Value)>),
 }
 
@@ -63,7 +63,7 @@ impl Value {
     /// Appends it to a YAML text, on one line.
     pub(super) fn write(&self, text: &mut String) {
         match self {
-            // `write!` to a string does not fail. Whole numbers stay whole, for keys that count.
+            // `write!` to a string does not fail. Integers stay integers, for keys that count.
             Self::Number(number) if number.fract() == 0.0 && number.abs() < 1e15 => {
                 let _ = write!(text, "{number:.0}");
             }
@@ -100,7 +100,7 @@ pub(super) fn quote(words: &str, text: &mut String) {
     if begins && words.chars().all(plain) && !words.ends_with(' ') && !matches!(words, "null" | "Null" | "NULL") {
         text.push_str(words);
     } else {
-        // JSON's strings are YAML's; a string always has a JSON form.
+        // JSON's strings are valid in YAML; every string has a JSON form.
         text.push_str(&serde_json::Value::from(words).to_string());
     }
 }
