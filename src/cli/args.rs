@@ -61,19 +61,19 @@ pub(super) enum Command {
     Gradient(GradientArgs),
     /// Find the parameters that agree with measured values.
     Fit(FitArgs),
-    /// Verify that a model integrates as theory tells, against manufactured motions of its own.
+    /// Verify that a model integrates with the order that theory predicts, against its own manufactured motions.
     Verify(VerifyArgs),
-    /// Check again what `mbint run --certify` has proven, from its file.
+    /// Check again the proof of `mbint run --certify`, from its file.
     VerifyCertificate(VerifyCertificateArgs),
-    /// Check models: errors with their places, coordinates, constraints, degrees of freedom.
+    /// Check models: errors with their locations, coordinates, constraints, degrees of freedom.
     Check(CheckArgs),
     /// Make report.html again from a folder of results.
     Report(ReportArgs),
-    /// Draw the assembled mechanism at its start, and print where its bodies and points are.
+    /// Draw the assembled mechanism at its start, and print the positions of its bodies and points.
     Show(ShowArgs),
     /// Compare error and computing time of methods, orders and step sizes.
     Cost(CostArgs),
-    /// Record bounds as small text files beside the models, or compare with the record.
+    /// Record bounds as small text files next to the models, or compare with the record.
     Snapshot(SnapshotArgs),
     /// Explain the compiled and omitted parts of a model, or list what the language offers.
     Explain(ExplainArgs),
@@ -81,13 +81,13 @@ pub(super) enum Command {
     Sample(SampleArgs),
     /// Write a model's nominal motion as source code.
     Export(ExportArgs),
-    /// Cut what models ask for into shards, for many machines.
+    /// Divide the work that models need into shards, for many machines.
     Plan(PlanArgs),
     /// Simulate a shard of a plan; existing parts are skipped.
     Shard(ShardArgs),
-    /// Print which shards of a plan are missing.
+    /// Print the missing shards of a plan.
     Status(StatusArgs),
-    /// Make the results of a plan from its shards, the very files that `mbint run` writes.
+    /// Make the results of a plan from its shards: the same files that `mbint run` writes.
     Merge(MergeArgs),
     /// Submit the shards of a plan, and its merging, to a cluster.
     Submit(SubmitArgs),
@@ -113,7 +113,7 @@ pub(super) struct LspArgs {
     #[command(flatten)]
     pub root: RootArgs,
 
-    /// What editors say who know several ways to talk to a server: this is the only one.
+    /// Option passed by editors that know several ways to talk to a server; this is the only one here.
     #[arg(long, hide = true)]
     pub stdio: bool,
 }
@@ -153,12 +153,12 @@ pub(super) struct RunArgs {
     #[arg(long)]
     pub timings: bool,
 
-    /// Print how long each stage took, by model and subsystem, and write it into this file as a trace for Perfetto or
+    /// Print the duration of each stage, by model and subsystem, and write it into this file as a trace for Perfetto or
     /// chrome://tracing.
     #[arg(long, value_name = "FILE", conflicts_with = "watch")]
     pub profile: Option<PathBuf>,
 
-    /// Run what takes more than 20000 simulations or about a minute.
+    /// Run even if this takes more than 20000 simulations or about a minute.
     #[arg(short, long)]
     pub yes: bool,
 
@@ -170,12 +170,12 @@ pub(super) struct RunArgs {
     #[arg(long, value_name = "FILE")]
     pub junit: Option<PathBuf>,
 
-    /// Let an interrupted run replace the results of a complete one [default: it writes into a folder beside].
+    /// Let an interrupted run replace the results of a complete one [default: it writes into a folder next to them].
     #[arg(long)]
     pub overwrite: bool,
 
-    /// Text for people, or one JSON array with an object for each model and scene, its summary in it; all else goes to
-    /// standard error.
+    /// Text for people, or one JSON array with an object, including its summary, for each model and scene; all other
+    /// output goes to standard error.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     pub format: Format,
 
@@ -183,7 +183,7 @@ pub(super) struct RunArgs {
     #[arg(short, long, conflicts_with = "format")]
     pub watch: bool,
 
-    /// Keep all simulations in this folder, and take from it those that are there: a run that was interrupted goes on.
+    /// Store all simulations in this folder, and reuse those that are there: an interrupted run continues.
     #[arg(long, value_name = "DIR")]
     pub store: Option<PathBuf>,
 }
@@ -216,7 +216,7 @@ pub(super) struct CostArgs {
     #[arg(short, long, value_name = "SHARE", value_parser = positive)]
     pub tolerance: Option<f64>,
 
-    /// Approximate computing time in seconds; settings that take longer are left out.
+    /// Approximate computing time in seconds; settings that take longer are omitted.
     #[arg(short, long, value_name = "SECONDS", value_parser = positive, default_value_t = 60.0)]
     pub budget: f64,
 
@@ -261,7 +261,7 @@ pub(super) struct SnapshotArgs {
     #[arg(short, long)]
     pub quiet: bool,
 
-    /// Run what takes more than 20000 simulations or about a minute.
+    /// Run even if this takes more than 20000 simulations or about a minute.
     #[arg(short, long)]
     pub yes: bool,
 }
@@ -314,7 +314,7 @@ quarters and along the three axes. Uncertain lengths of bodies have their tolera
 
 #[derive(Debug, Args)]
 pub(super) struct NewArgs {
-    /// The model's name, with folders before it if wanted, which are made; writes NAME.yaml and never overwrites a
+    /// The model's name, optionally with folders before it, which are created; writes NAME.yaml and never overwrites a
     /// file.
     #[arg(value_name = "NAME")]
     pub name: PathBuf,
@@ -322,7 +322,7 @@ pub(super) struct NewArgs {
 
 #[derive(Debug, Args)]
 pub(super) struct ManArgs {
-    /// The page of this command, as `mbint man run | man -l -` [default: that of mbint].
+    /// The page of this command, for example `mbint man run | man -l -` [default: that of mbint].
     #[arg(value_name = "COMMAND", conflicts_with = "output")]
     pub command: Option<String>,
 
@@ -333,7 +333,7 @@ pub(super) struct ManArgs {
 
 #[derive(Debug, Args)]
 pub(super) struct CompletionsArgs {
-    /// Which shell.
+    /// The shell.
     #[arg(value_name = "SHELL")]
     pub shell: Shell,
 }
@@ -371,7 +371,7 @@ impl Color {
     }
 }
 
-/// Methods by their names.
+/// Parser of methods, given by their names.
 pub(super) fn methods() -> impl TypedValueParser<Value = Method> {
     PossibleValuesParser::new(Method::ALL.map(Method::name))
         .try_map(|name| Method::ALL.into_iter().find(|method| method.name() == name).ok_or("no such method"))

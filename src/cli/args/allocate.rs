@@ -18,7 +18,7 @@ pub(in crate::cli) struct AllocateArgs {
     #[arg(short, long, value_name = "DIR")]
     pub output: Option<PathBuf>,
 
-    /// Meet all requirements for this share of the production, as `99.73%`, instead of in every case.
+    /// Meet all requirements for this share of the production, such as `99.73%`, instead of in every case.
     #[arg(long = "yield", value_name = "SHARE", value_parser = share)]
     pub share: Option<f64>,
 
@@ -32,7 +32,7 @@ pub(in crate::cli) struct AllocateArgs {
     #[command(flatten)]
     pub run: OneRunArgs,
 
-    /// Run what takes more than 20000 simulations or about a minute.
+    /// Run even if this takes more than 20000 simulations or about a minute.
     #[arg(short, long)]
     pub yes: bool,
 }

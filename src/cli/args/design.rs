@@ -18,7 +18,7 @@ pub(in crate::cli) struct DesignArgs {
     #[arg(short, long, value_name = "DIR")]
     pub output: Option<PathBuf>,
 
-    /// Count this share of the production, as `99.73%`, instead of every case.
+    /// Count this share of the production, such as `99.73%`, instead of every case.
     #[arg(long = "yield", value_name = "SHARE", value_parser = share)]
     pub share: Option<f64>,
 
@@ -32,7 +32,7 @@ pub(in crate::cli) struct DesignArgs {
     #[arg(long, value_enum, default_value_t = Format::Text)]
     pub format: Format,
 
-    /// Run what takes more than 20000 simulations or about a minute.
+    /// Run even if this takes more than 20000 simulations or about a minute.
     #[arg(short, long)]
     pub yes: bool,
 }

@@ -9,7 +9,7 @@ use crate::cli::listing::Listing;
 
 #[derive(Debug, Args)]
 pub(in crate::cli) struct ExplainArgs {
-    /// Model file; `-` is standard input. Or the code of a message, such as `E0401`: prints its page.
+    /// Model file; `-` is standard input. Or the code of a message, such as `E0401`, to print its page.
     #[arg(value_name = "MODEL", required_unless_present = "list")]
     pub model: Option<PathBuf>,
 
@@ -32,7 +32,7 @@ pub(in crate::cli) struct ExplainArgs {
     pub page: bool,
 }
 
-/// What to list instead of explaining a model.
+/// Lists, instead of the explanation of a model.
 #[derive(Debug, Args)]
 #[group(id = "list", multiple = false, conflicts_with = "model")]
 pub(in crate::cli) struct ListArgs {
@@ -74,7 +74,7 @@ pub(in crate::cli) struct ListArgs {
 }
 
 impl ListArgs {
-    /// The list that is asked for, other than that of effects.
+    /// The requested list, other than that of effects.
     pub fn listing(&self) -> Option<Listing> {
         let listings = [
             (self.units, Listing::Units),

@@ -40,7 +40,7 @@ pub(in crate::cli) struct Formats {
     #[arg(long)]
     pub c: bool,
 
-    /// As a unit of FMI for co-simulation: sources, and a library for this platform where there is a C compiler.
+    /// As a unit of FMI for co-simulation: sources, and a library for this platform if there is a C compiler.
     #[arg(long, value_name = "VERSION", value_enum, num_args = 0..=1, require_equals = true, default_missing_value = "3.0")]
     pub fmu: Option<UnitVersion>,
 }

@@ -22,8 +22,7 @@ pub(in crate::cli) struct FitArgs {
     #[arg(short, long, value_name = "DIR")]
     pub output: Option<PathBuf>,
 
-    /// Bound of the noise of an output, as `x3=0.1 mm`, where the table has no column for it; may be given several
-    /// times.
+    /// Noise bound of an output, such as `x3=0.1 mm`, if the table has no column for it; may be given several times.
     #[arg(long, value_name = "NAME=VALUE", value_parser = noise)]
     pub noise: Vec<NoiseBound>,
 
@@ -37,7 +36,7 @@ pub(in crate::cli) struct FitArgs {
     #[arg(long, value_enum, default_value_t = Format::Text)]
     pub format: Format,
 
-    /// Run what takes more than 20000 simulations or about a minute.
+    /// Run even if this takes more than 20000 simulations or about a minute.
     #[arg(short, long)]
     pub yes: bool,
 }

@@ -17,8 +17,8 @@ pub(in crate::cli) struct GradientArgs {
     #[arg(short, long, value_name = "DIR")]
     pub output: Option<PathBuf>,
 
-    /// Print and draw the derivatives in the row nearest to this time, s [default: of each output, where the parameters
-    /// move it the most].
+    /// Print and draw the derivatives in the row nearest to this time, s [default: for each output, the row in which
+    /// the parameters move it the most].
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     pub at: Option<f64>,
 

@@ -1,4 +1,4 @@
-//! The arguments of `mbint sample`, and of what else asks for samples.
+//! The arguments of `mbint sample`, and of other commands with samples.
 
 use std::path::PathBuf;
 
@@ -30,16 +30,16 @@ pub(in crate::cli) struct SampleArgs {
     #[command(flatten)]
     pub run: OneRunArgs,
 
-    /// Keep all simulations in this folder, and take from it those that are there.
+    /// Store all simulations in this folder, and reuse those that are there.
     #[arg(long, value_name = "DIR")]
     pub store: Option<PathBuf>,
 }
 
-/// At which parameters samples are simulated.
+/// Points of the parameters at which samples are simulated.
 #[derive(Clone, Debug, Default, Args)]
 pub(in crate::cli) struct PointArgs {
-    /// Simulate at the points of this table: a column for each parameter, in SI units, under its name; parameters
-    /// without a column are nominal. `-` is standard input.
+    /// Simulate at the points of this table: a column for each parameter, in SI units, with its name as heading;
+    /// parameters without a column are nominal. `-` is standard input.
     #[arg(long, value_name = "FILE", conflicts_with = "design")]
     pub points: Option<PathBuf>,
 
@@ -47,7 +47,7 @@ pub(in crate::cli) struct PointArgs {
     #[arg(long, value_name = "DESIGN:COUNT")]
     pub design: Option<String>,
 
-    /// Another number makes another Latin hypercube.
+    /// Seed of the Latin hypercube; each gives another one.
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub seed: u64,
 }

@@ -23,12 +23,11 @@ pub(in crate::cli) struct PlanArgs {
     #[arg(short, long, value_name = "DIR")]
     pub output: PathBuf,
 
-    /// Leave simulations to shards that take longer than this on one core; what takes less is done by `plan` and
-    /// `merge`.
+    /// Leave simulations that take longer than this on one core to shards; `plan` and `merge` do the others.
     #[arg(long, value_name = "SECONDS", value_parser = not_negative, default_value_t = 10.0)]
     pub at_once: f64,
 
-    /// Join parts to shards of at most this on one core.
+    /// Join parts to shards that take at most this on one core.
     #[arg(long, value_name = "SECONDS", value_parser = not_negative, default_value_t = 60.0)]
     pub shard_seconds: f64,
 
@@ -64,7 +63,7 @@ pub(in crate::cli) struct StatusArgs {
     #[arg(value_name = "DIR")]
     pub study: PathBuf,
 
-    /// Print nothing but the numbers of missing shards, as 3,7-9.
+    /// Print only the numbers of missing shards, such as 3,7-9.
     #[arg(short, long)]
     pub missing: bool,
 }
@@ -75,7 +74,7 @@ pub(in crate::cli) struct MergeArgs {
     #[arg(value_name = "DIR")]
     pub study: PathBuf,
 
-    /// Folder for the results, as of `mbint run` [default: results/<model's name>]; of samples their file.
+    /// Folder for the results, as for `mbint run` [default: results/<model's name>]; for samples their file.
     #[arg(short, long, value_name = "DIR")]
     pub output: Option<PathBuf>,
 
@@ -98,7 +97,7 @@ pub(in crate::cli) struct SubmitArgs {
     #[arg(long, required = true)]
     pub slurm: bool,
 
-    /// Folder for the results, as of `mbint run` [default: results/<model's name>].
+    /// Folder for the results, as for `mbint run` [default: results/<model's name>].
     #[arg(short, long, value_name = "DIR")]
     pub output: Option<PathBuf>,
 

@@ -1,4 +1,4 @@
-//! Arguments that several commands have.
+//! Arguments shared by several commands.
 
 use std::path::PathBuf;
 
@@ -13,7 +13,7 @@ use crate::model::{Override, read_overlay};
 use crate::results::Method;
 use crate::syntax::{Coded, Diagnostics};
 
-/// How many threads compute.
+/// Number of computing threads.
 #[derive(Clone, Copy, Debug, Args)]
 pub(in crate::cli) struct Threads {
     /// Number of threads; results do not depend on it [default: one per core].
@@ -28,7 +28,7 @@ impl Threads {
     }
 }
 
-/// Which scene of one model is simulated, and how.
+/// Scene of one model, and settings of its simulation.
 #[derive(Debug, Args)]
 pub(in crate::cli) struct OneRunArgs {
     /// Use this scene of the model.
@@ -51,7 +51,7 @@ pub(in crate::cli) struct AskedArgs {
     #[arg(value_parser = methods(), hide_possible_values = true)]
     pub method: Vec<Method>,
 
-    /// Add certified bounds: proven for all parameter values within their tolerances, of the true motion, or of the
+    /// Add certified bounds: proven for all parameter values within their tolerances, for the true motion, or for the
     /// motion as the time steps define it (`--certify=scheme`).
     #[arg(long, value_name = "PROOF", num_args = 0..=1, require_equals = true, default_missing_value = "motion")]
     #[arg(value_parser = proof)]
@@ -65,7 +65,7 @@ pub(in crate::cli) struct AskedArgs {
     pub scene: Vec<String>,
 
     /// Exclude parameter values with which the mechanism cannot be assembled or does not reach the end of the
-    /// simulation; the column `covered` has the share that is left.
+    /// simulation; the column `covered` has the remaining share.
     #[arg(long)]
     pub skip_infeasible: bool,
 
@@ -95,24 +95,24 @@ fn proof(name: &str) -> Result<Proof, String> {
     }
 }
 
-/// Which files models may name.
+/// Files that models may name.
 #[derive(Debug, Args)]
 pub(in crate::cli) struct RootArgs {
-    /// Let models name files of this folder or below, too: tables, robots, meshes, included files [default: of the
+    /// Let models also name files of this folder or below: tables, robots, meshes, included files [default: only of the
     /// model's folder].
     #[arg(long, value_name = "DIR")]
     pub root: Option<PathBuf>,
 }
 
-/// Parameters that the command line sets, and where models find files.
+/// Parameters set on the command line, and the folder of models' files.
 #[derive(Debug, Args)]
 pub(in crate::cli) struct SetArgs {
-    /// Set a parameter, as `l1=0.16`, `l1=0.16±2%` or `l1=[0.15, 0.17]`; may be given several times.
+    /// Set a parameter, such as `l1=0.16`, `l1=0.16±2%` or `l1=[0.15, 0.17]`; may be given several times.
     #[arg(short, long, value_name = "NAME=VALUE", value_parser = parse_override)]
     set: Vec<Override>,
 
-    /// Set the parameters of this YAML file (`parameters: { l1: 0.16 ± 2% }`), as `mbint allocate` writes it; `--set`
-    /// goes before.
+    /// Set the parameters of this YAML file (`parameters: { l1: 0.16 ± 2% }`), as written by `mbint allocate`; `--set`
+    /// takes precedence.
     #[arg(long, value_name = "FILE")]
     with: Vec<PathBuf>,
 
@@ -124,13 +124,13 @@ impl SetArgs {
     /// Settings of models; every parameter is set at most once.
     ///
     /// # Errors
-    /// For the first that is set twice, and for errors of a file.
+    /// For the first parameter that is set twice, and for errors of a file.
     pub fn given(&self) -> Result<Given, Failure> {
         Ok(Given { overrides: overlaid(&self.with, &self.set)?, root: self.files.root.clone(), witness: None })
     }
 }
 
-/// What files and settings set; settings go before.
+/// Parameters set by files and by `--set`; the latter take precedence.
 ///
 /// # Errors
 /// For the first parameter that is set twice, and for errors of a file.
@@ -138,7 +138,7 @@ pub(in crate::cli) fn overlaid(with: &[PathBuf], set: &[Override]) -> Result<Vec
     let mut laid: Vec<Override> = Vec::new();
     for path in with {
         let wrong = |wrong: Diagnostics| {
-            // The terminal writes the first `error[CODE]: ` itself.
+            // The terminal output adds the first `error[CODE]: ` itself.
             let text = wrong.to_string();
             let head = wrong.code().map_or_else(String::new, |code| format!("error[{code}]: "));
             Failure::wrong(text.strip_prefix(&head).unwrap_or(&text).trim_end()).of(&wrong)

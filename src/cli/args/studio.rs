@@ -13,11 +13,11 @@ pub(in crate::cli) struct StudioArgs {
     #[arg(value_name = "MODEL")]
     pub model: PathBuf,
 
-    /// Port to listen at on this machine; 0 is one that is free.
+    /// Port on this machine to listen at; 0 for any free one.
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub port: u16,
 
-    /// Print the address, and open no browser.
+    /// Print the address, without opening a browser.
     #[arg(long)]
     pub no_open: bool,
 

@@ -17,12 +17,12 @@ pub(in crate::cli) struct SweepArgs {
     #[arg(short, long, value_name = "DIR")]
     pub output: Option<PathBuf>,
 
-    /// Sweep a parameter, as `l1=0.1..0.2:11`, `l1=100..200:11 mm` or `l1=0.1..0.2:11 ± 1%`, or set one, as `l2=0.3`;
-    /// one or two may be swept.
+    /// Sweep a parameter, such as `l1=0.1..0.2:11`, `l1=100..200:11 mm` or `l1=0.1..0.2:11 ± 1%`, or set one, such as
+    /// `l2=0.3`; one or two may be swept.
     #[arg(short, long, value_name = "NAME=FROM..TO:VALUES", required = true)]
     pub set: Vec<String>,
 
-    /// Set the parameters of this YAML file, as `mbint allocate` writes it; swept and set values go before.
+    /// Set the parameters of this YAML file, as written by `mbint allocate`; swept and set values take precedence.
     #[arg(long, value_name = "FILE")]
     pub with: Vec<PathBuf>,
 
@@ -32,7 +32,7 @@ pub(in crate::cli) struct SweepArgs {
     #[command(flatten)]
     pub run: OneRunArgs,
 
-    /// Run what takes more than 20000 simulations or about a minute for one value.
+    /// Run even if one value takes more than 20000 simulations or about a minute.
     #[arg(short, long)]
     pub yes: bool,
 }

@@ -27,7 +27,7 @@ pub(in crate::cli) struct VerifyArgs {
     #[arg(long, value_name = "FILE")]
     pub junit: Option<PathBuf>,
 
-    /// Also write all of it into this file, as a page for people.
+    /// Also write all results into this file, as a page for people.
     #[arg(long, value_name = "FILE")]
     pub html: Option<PathBuf>,
 }
