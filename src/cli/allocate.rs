@@ -16,7 +16,7 @@ pub(super) fn allocate(args: AllocateArgs, console: &mut Console) -> Result<Stat
     let given = args.set.given()?;
     let model = load::load(&args.model, &given, args.run.scene.as_ref(), console)?;
     let Some((model, folder)) = with_folder(model, args.output.as_ref())? else { return Ok(Status::Wrong) };
-    // An interruption keeps what a study has confirmed.
+    // An interruption preserves confirmed results of a study.
     interrupt::keep_results(true);
     let asked = AllocateOptions { share: args.share, widest: args.widest };
     let found = ask(&model.name, &args.run, args.yes, |options| study::allocate(&model, asked, options));

@@ -11,12 +11,12 @@ use crate::model::shown;
 use crate::results::ModelFile;
 use crate::study;
 
-/// A verdict, as JSON has it.
+/// A verdict in JSON.
 #[derive(Serialize)]
 struct Answer {
     model: String,
     valid: bool,
-    /// Why not.
+    /// Reason for a refusal.
     #[serde(skip_serializing_if = "Option::is_none")]
     refusal: Option<String>,
     /// Whether the equations were compared with those of a model.
@@ -72,7 +72,7 @@ fn overview(found: &Answer) -> String {
     format!("{BOLD}{name}{BOLD:#}: proven\n  {bounds} of outputs, {cells} of time in {pieces} of the box; {of}\n")
 }
 
-/// What differs between a certificate and the model that is named; a status where that cannot be read.
+/// Difference between a certificate and the named model; a status if the model cannot be read.
 fn compared(
     args: &VerifyCertificateArgs,
     certificate: &Certificate,
@@ -100,7 +100,7 @@ fn compared(
     Ok(Ok(difference(certificate, &own)))
 }
 
-/// How a certificate's equations differ from a model's.
+/// Difference between a certificate's equations and a model's; `None` if there is none.
 fn difference(certificate: &Certificate, model: &[Certified]) -> Option<String> {
     let systems = &certificate.systems;
     if systems.len() != model.len() {

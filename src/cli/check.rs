@@ -22,7 +22,7 @@ struct Checked {
     ok: bool,
     #[serde(flatten)]
     counts: Option<Counts>,
-    /// Errors and warnings with their places.
+    /// Errors and warnings with their locations.
     diagnostics: Vec<crate::syntax::Record>,
     /// The error of the mechanism as a whole.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -45,7 +45,7 @@ struct Checked {
 }
 
 impl Checked {
-    /// Of a file of which nothing is known.
+    /// Empty result for a file.
     fn nothing(path: &Path) -> Self {
         Self {
             file: model::shown(path),
@@ -78,12 +78,12 @@ struct CheckedScene {
 #[derive(Serialize)]
 struct Counts {
     model: String,
-    /// As in a run's summary.
+    /// Name of the formulation, as in a run's summary.
     formulation: String,
     coordinates: usize,
     constraints: usize,
     degrees_of_freedom: usize,
-    /// Of the model with all its parts, where a run simulates less of it.
+    /// Counts of the model with all its parts, if a run simulates only some of them.
     #[serde(skip_serializing_if = "Option::is_none")]
     whole: Option<Whole>,
     uncertain_parameters: Vec<String>,
@@ -95,7 +95,7 @@ struct Counts {
     shared_start: Vec<String>,
     undetermined_outputs: Vec<String>,
     outputs: Vec<String>,
-    /// Why it is in space, where the model does not say so.
+    /// Reason why it is spatial, if the model does not say so.
     #[serde(skip_serializing_if = "Option::is_none")]
     spatial_because: Option<String>,
     /// Analysis, unless it is a motion.
@@ -107,10 +107,10 @@ struct Counts {
     /// Parts that no output depends on.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     not_simulated: Vec<String>,
-    /// What a run asks before it begins.
+    /// Confirmation that a run asks for before it begins.
     #[serde(skip_serializing_if = "Option::is_none")]
     asks: Option<String>,
-    /// Of the model with all its parts.
+    /// Structure of the model with all its parts.
     #[serde(flatten)]
     structure: Structure,
 }
@@ -189,7 +189,7 @@ fn check_scene(scene: &model::Scene) -> CheckedScene {
 }
 
 impl Counts {
-    /// Sizes of the simulated parts; names of the whole model, parts that will not be simulated included.
+    /// Sizes of the simulated parts; names of the whole model, including parts that will not be simulated.
     fn of(model: &Description) -> Result<Self, RunError> {
         let Ready { sizes, formulation, is_whole, left_out, price } = study::ready(model)?;
         let (Assembled { system, mobility, undetermined, shared, .. }, structure) = study::structure(model)?;

@@ -1,6 +1,6 @@
 //! Standard output and standard error: text for people, JSON, errors.
 //!
-//! This is the one way to the terminal. Texts hold names from files, which could hold what a terminal obeys; they are
+//! This is the one way to the terminal. Texts contain names from files, which could contain control sequences; they are
 //! made harmless here. Styles are therefore not in a text as the terminal's own sequences but as marks, which become
 //! those afterwards.
 
@@ -18,7 +18,7 @@ use crate::syntax::{Code, Coded, Diagnostics, harmless, is_harmful};
 
 pub(super) use crate::overview::{BOLD, coordinates, count};
 
-/// A text as the terminal gets it: harmless, marks as styles.
+/// A text for the terminal: harmless, marks as styles.
 fn styled(text: &str) -> String {
     let mut styled = String::with_capacity(text.len());
     for c in harmless(text).chars() {
@@ -47,7 +47,7 @@ pub(super) struct Console {
 }
 
 impl Console {
-    /// Writes text to standard output. A closed pipe is no failure: further text is dropped.
+    /// Writes text to standard output. A closed pipe is not a failure: further text is dropped.
     pub fn print(&mut self, text: &str) -> Result<(), Failure> {
         if self.closed {
             return Ok(());
@@ -59,7 +59,7 @@ impl Console {
                 Ok(())
             }
             Err(error) => {
-                // The models that follow run nevertheless.
+                // The following models run nevertheless.
                 self.closed = true;
                 self.failed = true;
                 self.error(&format!("cannot write to standard output: {error}"));
@@ -79,23 +79,23 @@ impl Console {
         self.coded_error(None, message);
     }
 
-    /// The same with its code, where it has one.
+    /// Writes an error with its code, if it has one.
     pub fn coded_error(&self, code: Option<Code>, message: &str) {
         let shown = code.map_or_else(String::new, |code| format!("[{code}]"));
         self.first.set(self.first.get().or(code));
         self.report(&format!("{RED}error{shown}{RED:#}: {message}\n"));
     }
 
-    /// Writes why a command ended early; returns the exit status.
+    /// Writes the reason why a command ended early; returns the exit status.
     pub fn failure(&self, failure: &Failure) -> Status {
-        // What comes next is said once for all models.
+        // The next step is printed once for all models.
         if !failure.is_deferred() {
             self.coded_error(failure.code(), failure.message());
         }
         failure.status()
     }
 
-    /// Names the page about the first error that has one.
+    /// Names the page of the first error that has one.
     pub fn more(&self) {
         if let Some(code) = self.first.get() {
             self.note(&format!("more: mbint explain {code}\n"));
@@ -107,7 +107,7 @@ impl Console {
         self.coded_warning(None, message);
     }
 
-    /// The same with its code, where it has one.
+    /// Writes a warning with its code, if it has one.
     pub fn coded_warning(&self, code: Option<Code>, message: &str) {
         let shown = code.map_or_else(String::new, |code| format!("[{code}]"));
         self.report(&format!("{YELLOW}warning{shown}{YELLOW:#}: {message}\n"));
@@ -118,7 +118,7 @@ impl Console {
         self.report(text);
     }
 
-    /// From now on writes no errors and warnings of a file that it has written: the file is read many times.
+    /// Suppresses repeated errors and warnings of a file from now on: the file is read many times.
     pub fn without_repetition(&mut self) {
         self.written = Some(RefCell::default());
     }
@@ -134,7 +134,7 @@ impl Console {
         }
     }
 
-    /// Writes text to standard error; if that is closed, nobody can be told.
+    /// Writes text to standard error; nothing can be reported if that is closed.
     fn report(&self, text: &str) {
         let _ = anstream::stderr().lock().write_all(styled(text).as_bytes());
     }
@@ -146,14 +146,14 @@ pub(super) fn file_names<'p>(paths: impl IntoIterator<Item = &'p PathBuf>) -> St
     names.collect::<Vec<_>>().join(", ")
 }
 
-/// Indented JSON with a line end; what a terminal could obey is escaped.
+/// Indented JSON with a line end; control characters of a terminal are escaped.
 pub(super) fn to_json(value: &impl Serialize) -> Result<String, Failure> {
     let text = serde_json::to_string_pretty(value);
     let text = text.map_err(|error| Failure::failed(format!("cannot write JSON: {error}")))?;
     let mut escaped = String::with_capacity(text.len() + 1);
     for c in text.chars() {
         match c {
-            // These stand within strings only, and are below U+10000.
+            // These occur within strings only, and are below U+10000.
             c if is_harmful(c) => escaped += &format!("\\u{:04x}", u32::from(c)),
             c => escaped.push(c),
         }

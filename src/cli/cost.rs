@@ -26,7 +26,7 @@ pub(super) fn cost(args: CostArgs, console: &mut Console) -> Result<Status, Fail
         progress: &|fraction| progress.set(fraction),
         interrupted: &interrupt::asked,
     };
-    // A study says itself what there is to keep.
+    // The study itself decides about results to keep.
     interrupt::keep_results(true);
     let study = match study::cost(&model, &options) {
         Ok(study) => study,
@@ -49,12 +49,12 @@ pub(super) fn cost(args: CostArgs, console: &mut Console) -> Result<Status, Fail
     Ok(if interrupt::asked() { Status::Interrupted } else { Status::Done })
 }
 
-/// The wanted error: the command's, else the model's, else the default.
+/// The wanted error: the command's, otherwise the model's, otherwise the default.
 fn wanted(args: &CostArgs, model: &Description) -> f64 {
     args.tolerance.or(model.bounds.tolerance).unwrap_or(BoundsRequest::TOLERANCE)
 }
 
-/// Each method's front in a table, the reference of the errors, the settings left out, and the choice.
+/// Each method's front in a table, the reference of the errors, the omitted settings, and the choice.
 fn overview(study: &CostStudy, folder: &Path, files: &[PathBuf]) -> String {
     let mut text = format!("{BOLD}{}{BOLD:#}: error against computing time\n\n", study.model);
     if !study.bounds.is_empty() {
@@ -145,7 +145,7 @@ fn trajectories(study: &CostStudy) -> Table<5> {
     table
 }
 
-/// An error, or the reference's own error where that is larger; 0 is exact.
+/// An error, or the reference's own error if that is larger; 0 is exact.
 fn error(error: f64, own: f64) -> String {
     match error {
         0.0 => "0".to_owned(),
@@ -233,7 +233,7 @@ fn choice(study: &CostStudy) -> String {
         (Some(point), _) => format!("The cheapest setting within {wanted:e} is {}.", described(point)),
         (None, Some(point)) => {
             let nearest = format!("No setting meets {wanted:e}; the nearest is {}.", described(point));
-            // Of those that were not run, costlier ones are nearer.
+            // Among the settings that were not run, costlier ones are nearer.
             match study.left_out.iter().any(|left_out| left_out.contains("budget")) {
                 true => format!("{nearest} Others were left out: {more} allows them."),
                 false => format!(

@@ -1,4 +1,4 @@
-//! `mbint design`: nominal values that are best with the tolerances about them.
+//! `mbint design`: nominal values that are best with their tolerances.
 
 use super::args::DesignArgs;
 use super::console::{BOLD, Console, count, file_names};
@@ -45,7 +45,7 @@ pub(super) fn design(args: DesignArgs, console: &mut Console) -> Result<Status, 
     Ok(verdict(&found, console))
 }
 
-/// Says what the best point does not fulfil.
+/// Prints the requirements that the best point does not meet.
 fn verdict(found: &DesignStudy, console: &mut Console) -> Status {
     let Some(best) = found.best().filter(|best| !best.is_feasible) else { return Status::Done };
     for own in &found.not_met {
@@ -130,7 +130,7 @@ fn overview(found: &DesignStudy) -> String {
     text
 }
 
-/// A table with a column for each of at most five things, beside a name and a unit.
+/// A table with a column for each of at most five things, after a name and a unit.
 struct Columns<'t, T> {
     table: Table<7>,
     things: &'t [&'t T],
@@ -185,7 +185,7 @@ fn points(found: &DesignStudy) -> String {
     table.table.render(2)
 }
 
-/// A column for each margin: the cheapest nominal values and tolerances that leave it.
+/// A column for each margin, with the cheapest nominal values and tolerances for it.
 fn front(found: &DesignStudy) -> String {
     let front: Vec<&DesignTrade> = found.front.iter().collect();
     let mut table = Columns::new("cost against", &vec!["margin"; front.len()], &front);

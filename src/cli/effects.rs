@@ -15,14 +15,14 @@ use crate::study::language_costs;
 pub(super) struct EffectDocs {
     #[serde(flatten)]
     docs: ElementDocs,
-    /// In a small mechanism of the plane.
+    /// Its cost in a small planar mechanism.
     adds: Option<EffectCost>,
 }
 
 /// All effects.
 ///
 /// # Errors
-/// Never, but for a defect of the examples that are counted.
+/// Only for a defect of the counted examples.
 pub(super) fn all() -> Result<Vec<EffectDocs>, Failure> {
     let costs = language_costs().map_err(|error| Failure::wrong(&error).of(&error))?;
     let with_cost = |docs: ElementDocs| {
@@ -32,7 +32,7 @@ pub(super) fn all() -> Result<Vec<EffectDocs>, Failure> {
     Ok(EffectKind::docs().into_iter().map(with_cost).collect())
 }
 
-/// What an effect adds to the instructions of a step.
+/// Instructions that an effect adds to a step, in words.
 pub(super) fn adds(cost: &EffectCost) -> String {
     let EffectCost { active, inactive } = cost;
     let always =

@@ -1,4 +1,4 @@
-//! `mbint explain`: what a model is compiled to, what the language offers, or the page of a message.
+//! `mbint explain`: the compiled form of a model, the contents of the language, or the page of a message.
 
 use super::args::{ExplainArgs, Format};
 use super::console::{BOLD, Console, count, to_json};
@@ -40,7 +40,7 @@ fn page(code: &str, format: Format) -> Result<String, Failure> {
     }
 }
 
-/// A code with its page, in Markdown, and the address of that.
+/// A code with its page, in Markdown, and the page's address.
 #[derive(Serialize)]
 struct CodePage {
     code: Code,
@@ -49,7 +49,7 @@ struct CodePage {
     href: String,
 }
 
-/// The list that is asked for.
+/// The requested list.
 fn listed(args: &ExplainArgs) -> Result<String, Failure> {
     if let Some(listing) = args.list.listing() {
         return match args.format {
@@ -68,7 +68,7 @@ fn listed(args: &ExplainArgs) -> Result<String, Failure> {
     }
 }
 
-/// The explanation for people, one paragraph per subject that the model has.
+/// The explanation for people, one paragraph for each subject of the model.
 fn text(explanation: &Explanation) -> String {
     let e = explanation;
     let mut text = format!("{BOLD}{}{BOLD:#}\n{}\n{}\n", e.model, e.space, e.formulation);
@@ -122,7 +122,7 @@ fn text(explanation: &Explanation) -> String {
     text
 }
 
-/// The stages of a step, how many instructions each has and when they are run.
+/// The stages of a step, with their numbers of instructions and the times at which they run.
 fn stages(e: &Explanation) -> String {
     let mut stages = Table::new([("", Align::Left), ("", Align::Right), ("", Align::Left)]);
     for (stage, when, instructions) in e.instructions.stages() {

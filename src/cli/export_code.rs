@@ -58,7 +58,7 @@ fn written(folder: &Path, files: &[(String, String)]) -> Result<Vec<PathBuf>, Fa
     files.iter().map(write).collect()
 }
 
-/// Writes the unit, with a library for this platform where there is a C compiler.
+/// Writes the unit, with a library for this platform if there is a C compiler.
 fn unit(folder: &Path, code: &CModel, version: FmiVersion, console: &Console) -> Result<PathBuf, Failure> {
     let mut files: Vec<(String, Vec<u8>)> =
         code.unit.iter().map(|(name, text)| (name.clone(), text.clone().into_bytes())).collect();
@@ -71,7 +71,7 @@ fn unit(folder: &Path, code: &CModel, version: FmiVersion, console: &Console) ->
     Ok(path)
 }
 
-/// The shared library of a unit, by the compiler that `CC` names, or `cc`, and its path in the unit.
+/// The shared library of a unit, compiled by `CC`, or `cc`, and its path in the unit.
 fn library(code: &CModel, version: FmiVersion) -> Result<(String, Vec<u8>), String> {
     let place = tempfile::tempdir().map_err(|error| error.to_string())?;
     let mut sources = Vec::new();

@@ -1,4 +1,4 @@
-//! Why a command ended early, or a model of several was not run, in words for the user.
+//! Reasons why a command ended early, or one of several models was not run, in words for the user.
 
 use super::Status;
 use crate::syntax::{Code, Coded};
@@ -27,7 +27,7 @@ impl Failure {
         Self { status: Status::Deferred, code: None, message: "simulations are left to shards".to_owned() }
     }
 
-    /// The same, with the code of the error that its message quotes.
+    /// Adds the code of the error that its message quotes.
     #[must_use]
     pub fn of(self, error: &impl Coded) -> Self {
         Self { code: error.code(), ..self }

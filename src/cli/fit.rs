@@ -91,7 +91,7 @@ fn overview(found: &Fit) -> String {
     text
 }
 
-/// The largest error of the model, and rows of which nothing is known.
+/// The largest error of the model, and the number of unknown rows.
 fn errors(found: &Fit) -> String {
     let known = found.rows.iter().filter(|row| row.error.is_finite());
     let largest = known.clone().map(|row| row.error / row.noise).fold(0.0, f64::max);

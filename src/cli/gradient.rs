@@ -52,14 +52,14 @@ pub(super) fn gradient(args: GradientArgs, console: &mut Console) -> Result<Stat
     Ok(Status::Done)
 }
 
-/// The row in which an output's derivatives are shown.
+/// The row at which an output's derivatives are shown.
 fn row(found: &Gradients, output: usize, at: Option<f64>) -> usize {
     let Some(at) = at else { return found.outputs[output].most_sensitive(&found.parameters) };
     let distance = |row: &usize| (found.times[*row] - at).abs();
     (0..found.times.len()).min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(0)
 }
 
-/// Prints the derivatives for people, a table a number.
+/// Prints the derivatives for people, a table for each number.
 fn overview(found: &Gradients, shown: &[DerivativesAt<'_>]) -> String {
     let mut text = format!("{BOLD}{}{BOLD:#}: derivatives at the nominal values\n", found.model);
     for own in shown {

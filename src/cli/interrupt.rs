@@ -1,5 +1,6 @@
-//! Ctrl-C, and the signals of a system that ends a program: while there are results to keep, the first asks a run to
-//! keep them and end, and the second ends the program at once; before, as while a model is compiled, the first does.
+//! Ctrl-C, and the signals of a system that ends a program: while there are results to keep, the first signal asks a
+//! run to keep them and end, and the second ends the program at once; before, for example while a model is compiled,
+//! the first does.
 
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -9,13 +10,13 @@ use super::status::Status;
 use crate::export::wait_for_folder;
 use crate::syntax::harmless;
 
-/// Whether an end was asked for.
+/// Whether the end was requested.
 static ASKED: AtomicBool = AtomicBool::new(false);
 
 /// Whether there are results to keep.
 static KEPT: AtomicBool = AtomicBool::new(false);
 
-/// From now on Ctrl-C, SIGTERM and SIGHUP do as this module says.
+/// Handles Ctrl-C, SIGTERM and SIGHUP from now on as described above.
 pub(super) fn listen() {
     let asked = || {
         let again = ASKED.swap(true, Ordering::Relaxed);
@@ -30,15 +31,15 @@ pub(super) fn listen() {
     let _ = ctrlc::set_handler(asked);
 }
 
-/// Whether an end was asked for.
+/// Whether the end was requested.
 pub(super) fn asked() -> bool {
     ASKED.load(Ordering::Relaxed)
 }
 
-/// Waits while another run writes into a folder, and says so.
+/// Waits while another run writes into a folder, and prints that.
 ///
 /// # Errors
-/// If an end is asked for meanwhile.
+/// If the end is requested meanwhile.
 pub(super) fn wait_for(folder: &Path) -> Result<(), Failure> {
     let mut is_told = false;
     let mut waits = || {
@@ -50,7 +51,7 @@ pub(super) fn wait_for(folder: &Path) -> Result<(), Failure> {
     wait_for_folder(folder, &mut waits).map_err(|error| Failure::failed(&error).of(&error))
 }
 
-/// Says whether there are results to keep.
+/// Sets whether there are results to keep.
 pub(super) fn keep_results(kept: bool) {
     KEPT.store(kept, Ordering::Relaxed);
 }

@@ -25,13 +25,13 @@ pub(super) struct Done {
     pub bounds: Bounds,
     pub summary: Summary,
     pub files: Vec<PathBuf>,
-    /// Where they are; an interrupted run does not replace a complete one.
+    /// Folder of the results; an interrupted run does not replace a complete one.
     pub folder: PathBuf,
     /// Simulations read from the store and added to it, in words.
     pub stored: Option<String>,
 }
 
-/// Told of each job, with its model's file, how it ended.
+/// Called for each job with its model's file and its outcome.
 pub(super) type Told<'t> = dyn FnMut(&Path, &Job, Result<&Done, &Failure>) + 't;
 
 /// Runs a model and writes its results. The status says whether they are reliable; [`report`] prints why not.
@@ -49,8 +49,8 @@ pub(super) fn run_one(job: &Job, request: &Request) -> Result<Done, Failure> {
     done
 }
 
-/// A model's bounds, with a bar of the progress meanwhile. What takes too long is [`Failure::wrong`], and was not
-/// begun.
+/// A model's bounds, with a progress bar meanwhile. A run that would take too long is refused with [`Failure::wrong`]
+/// before it begins.
 pub(super) fn bounds(
     model: &Description,
     settings: &Settings,
@@ -62,7 +62,7 @@ pub(super) fn bounds(
         begun();
         progress.set(fraction);
     };
-    // What `check` refuses is refused with its status.
+    // Models that `check` refuses are refused with the same status.
     let has_begun = AtomicBool::new(false);
     let there = store.filter(|_| !settings.quiet).map(|(kept, _)| kept.there());
     let options = study::Options {
@@ -102,7 +102,7 @@ pub(super) fn bounds(
 
 fn run_and_write(job: &Job, request: &Request) -> Result<Done, Failure> {
     let failed = |error: &dyn std::fmt::Display| Failure::failed(format!("{}: {error}", job.model.name));
-    // From the first rows on there is something to keep.
+    // There are results to keep from the first rows on.
     let asked = request.asked();
     let context = || context(&job.files, &asked.set, job.scene.as_deref(), asked.skip_infeasible);
     let store = request.store.as_ref().map(|kept| kept.open(&context())).transpose();
@@ -122,14 +122,14 @@ fn run_and_write(job: &Job, request: &Request) -> Result<Done, Failure> {
     let named = request.named.get(job.number).unwrap_or(&job.path);
     verdicts::add_commands(&mut summary, named, &request.given);
     let written = if request.timings { summary.clone() } else { summary.without_seconds() };
-    // At an interruption nobody is waited for.
+    // An interrupted run waits for nobody.
     let is_free = interrupt::wait_for(&job.folder).is_ok();
     let interrupted = summary.is_cut || interrupt::asked();
     let folder = match !is_free || interrupted && !request.overwrite && holds_complete_results(&job.folder) {
         true => beside(&job.folder),
         false => job.folder.clone(),
     };
-    // What compares scenes compares those of one run.
+    // The comparison of scenes is that of one run.
     if let Some(all) = folder.parent().filter(|_| !job.page && folder == job.folder) {
         interrupt::wait_for(all)?;
         remove_comparison(all).map_err(|error| failed(&error).of(&error))?;
@@ -139,7 +139,7 @@ fn run_and_write(job: &Job, request: &Request) -> Result<Done, Failure> {
     stage("motion for the report");
     let parts = (request.report && !interrupted)
         .then(|| page::parts(job, &bounds.functions, &summary, request.settings.threads));
-    // Half a motion is none.
+    // A partial motion is omitted.
     let parts = parts.filter(|_| !interrupt::asked());
     stage("writing files");
     let files = write_results(&folder, &bounds, &written, &provenance, interrupted, parts.as_ref());
@@ -152,7 +152,7 @@ fn run_and_write(job: &Job, request: &Request) -> Result<Done, Failure> {
     Ok(Done { status, bounds, summary, files, folder, stored })
 }
 
-/// The folder for an interrupted run's results beside those of a complete one.
+/// The folder for an interrupted run's results next to those of a complete one.
 fn beside(folder: &Path) -> PathBuf {
     let mut name = folder.file_name().unwrap_or_default().to_owned();
     name.push(".interrupted");

@@ -132,7 +132,7 @@ fn codes_text() -> String {
     table.render(0)
 }
 
-/// Something listed, a row each.
+/// A listed item, one per row.
 trait Row<const N: usize> {
     const TITLE: &'static str;
     const INTRODUCTION: &'static str;
@@ -146,7 +146,7 @@ fn text<const N: usize, T: Row<N>>(rows: &[T]) -> String {
     table.render(0)
 }
 
-/// A page of the book, which a test keeps current.
+/// A page of the book, which a test keeps up to date.
 fn page<const N: usize, T: Row<N>>(rows: &[T]) -> String {
     let line = |cells: &[String]| format!("| {} |\n", cells.join(" | "));
     let mut page = format!("# {}\n\n{}\n\n", T::TITLE, T::INTRODUCTION);
@@ -239,7 +239,7 @@ mod tests {
     use super::*;
     use crate::model;
 
-    /// A spatial and a planar mechanism with everything that has outputs but effects.
+    /// A spatial and a planar mechanism with every kind of part that has outputs, except effects.
     const SPACE: &str = "
 bodies:
   BODY: { mass: 1, inertia: [1, 1, 1], points: { POINT: [0.1, 0, 0] } }

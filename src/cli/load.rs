@@ -10,21 +10,21 @@ use crate::results::ModelFile;
 use crate::study;
 use crate::syntax::Coded;
 
-/// What the command line says of models beside their files.
+/// Settings of the command line for models, in addition to their files.
 #[derive(Clone, Default)]
 pub(super) struct Given {
     /// Values of parameters.
     pub overrides: Vec<Override>,
-    /// Folder whose files models may name, beside those of their own folders.
+    /// Folder whose files models may name, in addition to those of their own folders.
     pub root: Option<PathBuf>,
-    /// Functions of the time that excitations are.
+    /// Functions of the excitations over time.
     pub witness: Option<Witness>,
 }
 
 /// The models that could be read.
 pub(super) struct Loaded {
     pub models: Vec<LoadedModel>,
-    /// Whether these are all: reading may fail by an error of this program.
+    /// Whether these are all models: reading may fail by an error of this program.
     pub is_complete: bool,
 }
 
@@ -36,7 +36,7 @@ pub(super) struct LoadedModel {
     pub name: String,
     /// Its scenes with their names; one without a name if the model has none.
     pub scenes: Vec<(Option<String>, Description)>,
-    /// Names of all scenes that it has.
+    /// Names of all its scenes.
     pub all: Vec<String>,
     /// The files that it was read from.
     pub files: Vec<ModelFile>,
@@ -48,7 +48,7 @@ pub(super) struct LoadedModel {
 /// models are reported and there is no result.
 ///
 /// # Errors
-/// For a name that is no scene of a model.
+/// For a name that is not a scene of a model.
 pub(super) fn load_all(
     models: &[PathBuf],
     given: &Given,
@@ -85,7 +85,7 @@ pub(super) fn load_all(
 /// Reads a model, or a scene of it, and reports its errors and warnings.
 ///
 /// # Errors
-/// For a name that is no scene of it.
+/// For a name that is not a scene of it.
 pub(super) fn load(
     path: &Path,
     given: &Given,

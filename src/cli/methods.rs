@@ -6,13 +6,13 @@ use super::console::BOLD;
 use crate::methods::{About, Method};
 use crate::overview::{Align, Table};
 
-/// What people read of a method.
+/// Documentation of a method for people.
 #[derive(Debug, Serialize)]
 pub(super) struct MethodDocs {
     keyword: &'static str,
     description: &'static str,
     source: &'static str,
-    /// Names and descriptions of its keys; empty where only the command line asks for it.
+    /// Names and descriptions of its keys; empty if only the command line can request it.
     keys: Vec<(String, String)>,
 }
 

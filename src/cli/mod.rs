@@ -1,5 +1,5 @@
-//! The command line: `args` reads the arguments, and one file a command checks and executes them. `status` has the exit
-//! codes.
+//! The command line: `args` reads the arguments, and one file per command checks and executes them. `status` has the
+//! exit codes.
 
 mod allocate;
 mod answer_fmu;
@@ -78,7 +78,7 @@ pub fn main() -> ExitCode {
     }
     let cli = match parsed(&arguments, color) {
         Ok(cli) => cli,
-        // Help and version are errors of clap too, with status 0. A closed pipe is no error.
+        // Help and version are errors of clap too, with status 0. A closed pipe is not an error.
         Err(error) => {
             let _ = error.print();
             return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2));
@@ -97,8 +97,7 @@ pub fn main() -> ExitCode {
     ExitCode::from(status)
 }
 
-/// The command. Its errors are reported of arguments that are harmless: clap's messages have colours, and
-/// quote the arguments.
+/// The command. Errors quote harmless forms of the arguments, since clap's messages have colours.
 fn parsed(arguments: &[OsString], color: Color) -> Result<Cli, clap::Error> {
     let parse = |arguments: &[OsString]| {
         let matches = Cli::command().color(color.clap()).try_get_matches_from(arguments)?;
@@ -147,7 +146,7 @@ fn execute(command: Command, console: &mut Console) -> Result<Status, Failure> {
     }
 }
 
-/// The last `--color` among the arguments; `auto` where it is missing or wrong, which clap reports.
+/// The last `--color` among the arguments; `auto` if it is missing or wrong, which clap reports.
 fn color(arguments: &[OsString]) -> Color {
     let mut color = Color::Auto;
     let mut arguments = arguments.iter().filter_map(|argument| argument.to_str()).take_while(|a| *a != "--");

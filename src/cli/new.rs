@@ -1,4 +1,4 @@
-//! `mbint new`: a model to begin with.
+//! `mbint new`: a model as a starting point.
 
 use std::fs::OpenOptions;
 use std::io::{ErrorKind, Write};
@@ -10,7 +10,7 @@ use super::{Failure, Status};
 
 /// A model that runs, with its name to be replaced.
 const TEMPLATE: &str = include_str!("../../models/template.yaml");
-/// Where the project's own models find the schema; a new model looks beside itself.
+/// Location of the schema for the project's own models; a new model has it in its own folder.
 const SCHEMA: &str = "../schemas/mbint.schema.json";
 /// Its name line.
 const NAME_LINE: &str = "model: template\n";
@@ -38,7 +38,7 @@ pub(super) fn new(args: &NewArgs, console: &mut Console) -> Result<Status, Failu
             return wrong(format!("{path} exists; it was left as it is"));
         }
         Err(error) => {
-            // Half a model would be in the way of the next try.
+            // A partial file would prevent the next attempt.
             let _ = std::fs::remove_file(&path);
             return wrong(format!("cannot write {path}: {error}"));
         }

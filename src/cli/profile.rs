@@ -1,5 +1,5 @@
-//! `mbint run --profile FILE`: how long each stage took, by model and subsystem, as a table and as a trace
-//! (decision 0158).
+//! `mbint run --profile FILE`: the duration of each stage, by model and subsystem, as a table and as a trace (decision
+//! 0158).
 
 use std::fs;
 use std::path::PathBuf;
@@ -15,16 +15,16 @@ use crate::overview::{Align, Table};
 struct Span {
     /// Name of the model and its scene; empty for the command itself.
     model: String,
-    /// Index of the subsystem; `None` for all of the model.
+    /// Index of the subsystem; `None` for the whole model.
     subsystem: Option<usize>,
     stage: String,
-    /// Since the profile began.
+    /// Start, relative to that of the profile.
     begun: Duration,
     ended: Option<Duration>,
 }
 
-/// Spans one after the other: each begins where the one before ends. The stages of a run follow one another; the work
-/// within a stage is spread over threads.
+/// Consecutive spans: each begins where the one before ends. The stages of a run follow one another; the work within a
+/// stage is spread over threads.
 pub(super) struct Profile {
     file: PathBuf,
     begun: Instant,
@@ -32,10 +32,10 @@ pub(super) struct Profile {
 }
 
 impl Profile {
-    /// Begins with the reading of models; the trace goes to `file`, which is made at once.
+    /// Begins with the reading of models; the trace goes to `file`, which is created at once.
     ///
     /// # Errors
-    /// Where the file cannot be made: better now than after hours.
+    /// If the file cannot be created: better now than after hours.
     pub fn new(file: PathBuf) -> Result<Self, Failure> {
         fs::File::create(&file).map_err(|error| Failure::wrong(format!("{}: {error}", file.display())))?;
         let profile = Self { file, begun: Instant::now(), spans: Mutex::default() };
@@ -43,24 +43,24 @@ impl Profile {
         Ok(profile)
     }
 
-    /// A model's run begins.
+    /// Begins a model's run.
     pub fn model(&self, name: &str) {
         self.begin(name.to_owned(), None, "beginning");
     }
 
-    /// A subsystem begins, or what belongs to all of them.
+    /// Begins a subsystem, or a part common to all of them.
     pub fn subsystem(&self, subsystem: Option<usize>) {
         let (model, _) = self.current();
         self.begin(model, subsystem, "preparing");
     }
 
-    /// A stage begins.
+    /// Begins a stage.
     pub fn stage(&self, stage: &str) {
         let (model, subsystem) = self.current();
         self.begin(model, subsystem, stage);
     }
 
-    /// The model's run has ended.
+    /// Ends the model's run.
     pub fn end(&self) {
         self.begin(String::new(), None, "between runs");
     }
@@ -68,7 +68,7 @@ impl Profile {
     /// Writes the trace, in the format of Chrome's trace viewer and Perfetto; returns the table.
     ///
     /// # Errors
-    /// Where the file cannot be written.
+    /// If the file cannot be written.
     pub fn finish(&self) -> Result<String, Failure> {
         self.end();
         let spans = self.spans.lock().unwrap_or_else(PoisonError::into_inner);
@@ -93,7 +93,7 @@ impl Profile {
     }
 }
 
-/// Ended spans with their durations, but for those between two stages that took no time.
+/// Ended spans with their durations, except those that took no time.
 fn ended(spans: &[Span]) -> impl Iterator<Item = (&Span, Duration)> {
     let lasted = |span: &Span| span.ended.map(|ended| ended - span.begun);
     spans.iter().filter_map(move |span| Some((span, lasted(span)?))).filter(|(_, lasted)| lasted.as_micros() > 0)

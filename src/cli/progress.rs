@@ -1,4 +1,4 @@
-//! The progress bar; where there is no terminal, a line now and then.
+//! The progress bar; without a terminal, a line now and then.
 
 use std::fmt::Write as _;
 use std::io::{IsTerminal, Write};
@@ -12,17 +12,17 @@ use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, P
 use super::tuning::TUNING;
 use crate::syntax::harmless;
 
-/// A bar on a terminal's standard error, gone when dropped; elsewhere a line every ten seconds.
+/// A bar on a terminal's standard error, removed when dropped; elsewhere a line every ten seconds.
 pub(super) struct Progress {
     bar: ProgressBar,
     /// Current activity.
     stage: Arc<Mutex<String>>,
-    /// Writes the lines where there is no terminal, until the sender is gone.
+    /// Thread that writes the lines without a terminal, until the sender is dropped.
     lines: Option<(Sender<()>, JoinHandle<()>)>,
 }
 
 impl Progress {
-    /// A bar labelled with `name`, or none.
+    /// A bar labelled with `name`; hidden unless `visible`.
     pub fn new(name: &str, visible: bool) -> Self {
         let terminal = std::io::stderr().is_terminal();
         let target =
@@ -32,7 +32,7 @@ impl Progress {
         let style = ProgressStyle::with_template("{prefix}: {msg}  [{bar:30}] {percent:>3} %{left}");
         if let Ok(style) = style {
             let left = |state: &ProgressState, text: &mut dyn std::fmt::Write| {
-                // What cannot be written is not shown.
+                // Failures of the output are ignored.
                 let _ = text.write_str(&left(f64::from(state.fraction()), state.elapsed()));
             };
             bar.set_style(style.progress_chars("=> ").with_key("left", left));
@@ -49,8 +49,8 @@ impl Progress {
         Self { bar, stage, lines }
     }
 
-    /// Shows that this fraction is done. May be called from any thread, in any order: the bar goes back for a new count
-    /// only, which begins with 0.
+    /// Shows the finished fraction. May be called from any thread, in any order: the bar goes back only for a new
+    /// count, which begins with 0.
     pub fn set(&self, fraction: f64) {
         if fraction == 0.0 {
             self.bar.reset();
@@ -61,9 +61,9 @@ impl Progress {
         }
     }
 
-    /// A line above the bar, that stays.
+    /// Prints a line above the bar, which stays.
     pub fn note(&self, line: &str) {
-        // If standard error is closed, nobody can be told.
+        // If standard error is closed, nothing can be reported.
         self.bar.suspend(|| drop(writeln!(std::io::stderr(), "{line}")));
     }
 
@@ -74,7 +74,7 @@ impl Progress {
     }
 }
 
-/// A line every ten seconds, until there is nobody to end it.
+/// Writes a line every ten seconds, until the other end of `ended` is dropped.
 fn write_lines(name: &str, bar: &ProgressBar, stage: &Mutex<String>, ended: &Receiver<()>) {
     let mut known = None;
     while ended.recv_timeout(TUNING.between_lines) == Err(RecvTimeoutError::Timeout) {
@@ -86,7 +86,7 @@ fn write_lines(name: &str, bar: &ProgressBar, stage: &Mutex<String>, ended: &Rec
         }
         let line = line(name, &stage, done, bar.elapsed());
         known = Some((stage, percent(done)));
-        // If standard error is closed, nobody can be told.
+        // If standard error is closed, nothing can be reported.
         let _ = writeln!(std::io::stderr(), "{line}");
     }
 }
@@ -103,12 +103,12 @@ fn line(name: &str, stage: &str, fraction: f64, elapsed: Duration) -> String {
     line
 }
 
-/// Whole percent: of a hundred, only when all is done.
+/// Whole per cent: a hundred only when all is done.
 fn percent(fraction: f64) -> u32 {
     (100.0 * fraction) as u32
 }
 
-/// How long the rest takes if it goes on like that; empty where that is not known yet.
+/// Remaining time at the present speed; empty if unknown yet.
 fn left(fraction: f64, elapsed: Duration) -> String {
     let left = elapsed.as_secs_f64() * (1.0 / fraction.max(1e-6) - 1.0);
     match fraction > 0.01 && fraction < 1.0 && left < 1e6 {
@@ -122,7 +122,7 @@ impl Drop for Progress {
         self.bar.finish_and_clear();
         if let Some((sender, lines)) = self.lines.take() {
             drop(sender);
-            // It has nothing to hand over; should it have panicked, the lines were lost and nothing else.
+            // The thread has no result; after a panic only its lines are missing.
             let _ = lines.join();
         }
     }

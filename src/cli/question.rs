@@ -8,7 +8,7 @@ use super::progress::Progress;
 use super::{Failure, interrupt};
 use crate::study;
 
-/// Asks with the options of a command, and shows the progress unless it is quiet. `costly`: whether it may take long.
+/// Asks with the options of a command, and shows the progress unless it is quiet. `costly` is whether it may take long.
 pub(super) fn ask<T>(model: &str, run: &OneRunArgs, costly: bool, question: impl FnOnce(&study::Options) -> T) -> T {
     let progress = Progress::new(model, !run.quiet);
     question(&study::Options {

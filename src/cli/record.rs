@@ -1,4 +1,4 @@
-//! What `mbint run --format json` prints of each model or scene.
+//! Output of `mbint run --format json` for each model or scene.
 
 use std::fs;
 use std::path::Path;
@@ -12,31 +12,31 @@ use crate::export::SUMMARY;
 use crate::model;
 use crate::syntax::Code;
 
-/// How a model or a scene ended.
+/// Outcome of a model or a scene.
 #[derive(Serialize)]
 pub(super) struct Record {
     /// The model's file.
     file: String,
     /// The model's name, and the scene's after a slash.
     model: String,
-    /// As the command's, had it run this alone.
+    /// Exit code of the command if it had run this alone.
     exit_code: u8,
-    /// Why there are no results.
+    /// Reason why there are no results.
     #[serde(skip_serializing_if = "Option::is_none")]
     error: Option<String>,
-    /// The code of that.
+    /// The code of that error.
     #[serde(skip_serializing_if = "Option::is_none")]
     error_code: Option<Code>,
-    /// Where the results are.
+    /// Folder of the results.
     #[serde(skip_serializing_if = "Option::is_none")]
     folder: Option<String>,
-    /// What `summary.json` has.
+    /// Contents of `summary.json`.
     #[serde(skip_serializing_if = "Option::is_none")]
     summary: Option<serde_json::Value>,
 }
 
 impl Record {
-    /// Of a job that ended.
+    /// The record of a job that ended.
     pub fn of(path: &Path, job: &Job, done: Result<&Done, &Failure>) -> Self {
         let nothing = Self {
             file: model::shown(path),
@@ -49,7 +49,7 @@ impl Record {
         };
         match done {
             Ok(done) => {
-                // As it was written, so that both say the same.
+                // From the written file, so that both agree.
                 let summary =
                     fs::read(done.folder.join(SUMMARY)).ok().and_then(|text| serde_json::from_slice(&text).ok());
                 let folder = Some(done.folder.display().to_string());

@@ -1,4 +1,4 @@
-//! `mbint report`, and what `mbint run` adds for a report.
+//! `mbint report`, and the parts that `mbint run` adds for a report.
 
 use super::args::ReportArgs;
 use super::console::Console;
@@ -17,7 +17,7 @@ pub(super) fn report(args: &ReportArgs, console: &mut Console) -> Result<Status,
     Ok(Status::Done)
 }
 
-/// What a report shows of a job beside its results. The page says so where a motion cannot be simulated.
+/// Parts of a job's report in addition to its results. The page reports that a motion cannot be simulated.
 pub(super) fn parts(job: &Job, worst: &[FunctionWitness], summary: &Summary, threads: Option<usize>) -> ReportParts {
     let options = MotionOptions {
         threads,

@@ -17,37 +17,37 @@ use crate::store::Missing;
 /// The arguments of a run, checked.
 pub(super) struct Request {
     pub models: Vec<PathBuf>,
-    /// The same models as results name them.
+    /// Paths of the same models in results.
     pub named: Vec<PathBuf>,
     pub given: Given,
-    /// The file of functions of the time, as results name it.
+    /// Path in results of the file of functions of the time.
     pub witness: Option<String>,
     /// Empty for all scenes.
     pub scenes: Vec<String>,
-    /// What certified bounds are to prove, if they are asked for.
+    /// Claim of certified bounds, if they are requested.
     pub certify: Option<Proof>,
     pub output: Option<PathBuf>,
     /// Whether no overview is printed.
     pub quiet: bool,
     /// Whether a report is written.
     pub report: bool,
-    /// Where verdicts are written, too.
+    /// File for verdicts, if requested.
     pub junit: Option<Junit>,
     /// Whether computing times are written.
     pub timings: bool,
     pub overwrite: bool,
     pub settings: Settings,
-    /// Where simulations are kept, if they are.
+    /// Store of simulations, if requested.
     pub store: Option<KeptRun>,
 }
 
-/// How a model is run.
+/// Settings of a model's run.
 #[derive(Default)]
 pub(super) struct Settings {
     /// `None` for the model's own methods.
     pub methods: Option<Vec<Method>>,
     pub threads: Option<usize>,
-    /// Whether what takes long is run.
+    /// Whether long runs are allowed.
     pub yes: bool,
     pub certify_time: bool,
     pub skip_infeasible: bool,
@@ -55,7 +55,7 @@ pub(super) struct Settings {
     pub derivatives: bool,
     /// Whether no progress is shown.
     pub quiet: bool,
-    /// Where the stages' times are noted, if they are.
+    /// Recorder of the stages' times, if requested.
     pub profile: Option<Profile>,
 }
 
@@ -73,11 +73,11 @@ pub(super) struct Job {
     pub beside: PathBuf,
     /// Jobs that share a report.
     pub share: usize,
-    /// Whether the report is beside the results, and not that of all scenes.
+    /// Whether the report is next to the results, and not that of all scenes.
     pub page: bool,
-    /// Number of the model among those of the command.
+    /// Index of the model among those of the command.
     pub number: usize,
-    /// Name of its scene, where it has some.
+    /// Name of its scene, if it has scenes.
     pub scene: Option<String>,
 }
 
@@ -113,7 +113,7 @@ impl Request {
         })
     }
 
-    /// What the results depend on.
+    /// Everything that determines the results.
     pub fn asked(&self) -> RunRequest {
         let methods = self.settings.methods.as_ref();
         RunRequest {
@@ -131,7 +131,7 @@ impl Request {
 /// Reads functions of the time.
 ///
 /// # Errors
-/// Where the file cannot be read, or is none.
+/// If the file cannot be read, or is not a witness.
 fn read_witness(path: &Path) -> Result<Witness, Failure> {
     let wrong = |why: String| Failure::wrong(format!("{}: {why}", shown(path)));
     let text = std::fs::read_to_string(path).map_err(|error| wrong(error.to_string()))?;

@@ -1,10 +1,10 @@
-//! Questions that no method resolves.
+//! Questions that no method answers reliably.
 
 use super::Status;
 use crate::overview::unanswered;
 use crate::results::{Bounds, OutputBounds, Summary};
 
-/// Whether everything that was asked is answered: every output at every time by some method, every reduced output, and
+/// Checks whether every question is answered: every output at every time by some method, every reduced output, and
 /// every statistic.
 pub(super) fn resolution(bounds: &Bounds, summary: &Summary) -> Status {
     // One reliable method is enough.

@@ -14,13 +14,13 @@ use crate::model::{Description, shown};
 use crate::overview::overview;
 use crate::study;
 
-/// Work on a file.
+/// Work on a model file.
 struct Work {
     path: PathBuf,
     kind: Kind,
 }
 
-/// The model, or its scenes.
+/// The model itself, or its scenes.
 enum Kind {
     Alone(Box<Job>),
     Scenes(Scenes),
@@ -38,7 +38,7 @@ impl Kind {
 /// Runs every model and writes its results; the errors of some do not end the others.
 ///
 /// # Errors
-/// Where a model is wrong as a whole; nothing was run then.
+/// If a model is wrong as a whole; nothing was run then.
 pub(super) fn run_all(request: &Request, console: &mut Console, told: &mut Told) -> Result<Status, Failure> {
     let Some(loaded) = load::load_all(&request.models, &request.given, &request.scenes, console)? else {
         return Ok(Status::Wrong);
@@ -113,10 +113,10 @@ pub(super) fn results_of(name: &str) -> PathBuf {
     name.split('/').fold(PathBuf::from("results"), |folder, part| folder.join(file_stem(part)))
 }
 
-/// A model that could be read, with the folder of its results, which is ready.
+/// A model that could be read, with its folder for results, which is ready.
 ///
 /// # Errors
-/// If the folder cannot be made.
+/// If the folder cannot be created.
 pub(super) fn with_folder(
     model: Option<Description>,
     output: Option<&PathBuf>,

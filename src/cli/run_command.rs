@@ -34,7 +34,7 @@ fn run_once(request: &mut Request, format: Format, console: &mut Console) -> Res
                 records.push(Record::of(path, job, done));
             };
             let status = run_all(request, console, &mut record);
-            // The document is whole whatever happened.
+            // The document is complete in any case.
             console.print(&to_json(&records)?)?;
             status
         }

@@ -16,9 +16,9 @@ use crate::results::{ErrorSummary, Summary};
 /// A model's scenes that are run together.
 pub(super) struct Scenes {
     model: String,
-    /// Each scene has a folder in it.
+    /// Folder that contains a folder for each scene.
     folder: PathBuf,
-    /// Names of all scenes of the model, be they run or not.
+    /// Names of all scenes of the model, whether they are run or not.
     all: Vec<String>,
     jobs: Vec<(String, Job)>,
 }
@@ -27,7 +27,7 @@ pub(super) struct Scenes {
 struct Ran<'s> {
     scene: &'s str,
     seconds: f64,
-    /// `None` where the run failed.
+    /// `None` if the run failed.
     done: Option<Done>,
 }
 
@@ -74,7 +74,7 @@ impl Scenes {
             .iter()
             .filter_map(|ran| Some(SceneBounds { name: ran.scene, bounds: &ran.done.as_ref()?.bounds }))
             .collect();
-        // What compares scenes is written when all are there.
+        // The comparison of scenes is written when all are finished.
         interrupt::wait_for(&self.folder)?;
         let files = if found.is_empty() || status == Status::Deferred {
             Ok(Vec::new())

@@ -29,7 +29,7 @@ pub(super) fn show(args: &ShowArgs, console: &mut Console) -> Result<Status, Fai
     Ok(Status::Done)
 }
 
-/// Where the bodies' frames and points are.
+/// Positions of the bodies' frames and points.
 fn table(drawing: &Drawing) -> String {
     if drawing.spatial { in_space(drawing) } else { in_the_plane(drawing) }
 }
@@ -61,7 +61,7 @@ fn in_space(drawing: &Drawing) -> String {
     format!("{BOLD}{}{BOLD:#} at its start\n{}", drawing.model, table.render(2))
 }
 
-/// A row for each frame and each named point; the ground's frame is that of the positions.
+/// A row for each frame and each named point; positions are relative to the ground's frame.
 fn rows(drawing: &Drawing) -> impl Iterator<Item = (String, [f64; 3], Option<&DrawnBody>)> {
     drawing.bodies.iter().enumerate().flat_map(|(index, body)| {
         let frame = (index > 0).then(|| (body.name.clone(), body.position, Some(body)));

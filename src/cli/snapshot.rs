@@ -1,4 +1,4 @@
-//! `mbint snapshot`: bounds as small text files beside the models, and the changes since they were recorded.
+//! `mbint snapshot`: bounds as small text files next to the models, and the changes since they were recorded.
 
 use std::collections::HashMap;
 use std::io::ErrorKind;
@@ -73,7 +73,7 @@ impl Job {
         self.folder.join(&self.file)
     }
 
-    /// The snapshot's table as it is now.
+    /// The present table of the snapshot.
     fn table(&self, settings: &Settings) -> Result<String, Failure> {
         let (bounds, summary) = job::bounds(&self.model, settings, None, &|| ())?;
         match summary.failure {
@@ -141,7 +141,7 @@ impl Job {
     }
 }
 
-/// What moved, with the time at which it did so most; empty where nothing did.
+/// Table of moved curves, with the times of their largest changes; empty if none moved.
 pub(super) fn moves(found: &[Moved]) -> String {
     if found.is_empty() {
         return String::new();

@@ -1,10 +1,10 @@
-//! Exit codes: one table, from which the process' status, `--help` and the reference page follow.
+//! Exit codes: one table for the process' status, `--help` and the reference page.
 
 use std::process::ExitCode;
 
 use serde::Serialize;
 
-/// How a command ended; the worse, the greater.
+/// Outcome of a command; the worse, the greater.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Status {
     Done,
@@ -16,7 +16,7 @@ pub(super) enum Status {
     Wrong,
 }
 
-/// An exit code, its meaning and what the results' folder then contains.
+/// An exit code, its meaning and the contents of the results' folder afterwards.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub(super) struct StatusDocs {
     pub code: u8,
@@ -25,7 +25,7 @@ pub(super) struct StatusDocs {
 }
 
 impl Status {
-    /// All of them, by their codes.
+    /// All statuses, by their codes.
     pub const ALL: [Self; 7] =
         [Self::Done, Self::Failed, Self::Wrong, Self::Unresolved, Self::NotMet, Self::Deferred, Self::Interrupted];
 

@@ -1,9 +1,9 @@
-//! What `mbint check` says of a mechanism as an engineer counts it.
+//! Structure of a mechanism as an engineer counts it, for `mbint check`.
 
 use crate::overview::{count, digits, significant};
 use crate::results::{KindCount, MassRange, MobilityCount, Structure};
 
-/// Lines for people: mobility, size and mass, what acts.
+/// Lines for people: mobility, size and mass, acting effects.
 pub(super) fn lines(structure: &Structure) -> String {
     let Structure { mobility, size, mass, .. } = structure;
     format!("  {}\n  {}, {}\n  {}\n", counted(mobility), extent(mobility, size), massed(mass), acting(structure))
@@ -39,14 +39,14 @@ fn massed(mass: &MassRange) -> String {
     if mass.lower == mass.upper {
         return format!("{} kg", digits(mass.nominal));
     }
-    // The fewest digits with which both ends differ from the middle; a narrow interval has no more than 12.
+    // The fewest digits with which both ends differ from the middle, at most 12 for a narrow interval.
     let texts = |digits| [mass.nominal, mass.lower, mass.upper].map(|mass| significant(mass, digits));
     let differ = |[nominal, lower, upper]: &[String; 3]| nominal != lower && nominal != upper;
     let [nominal, lower, upper] = (4..12).map(texts).find(differ).unwrap_or_else(|| texts(12));
     format!("{nominal} kg (from {lower} to {upper} kg)")
 }
 
-/// What pulls, drives and resists.
+/// Effects that pull, drive and resist.
 fn acting(structure: &Structure) -> String {
     let counted = |kinds: &[KindCount]| {
         kinds.iter().map(|&KindCount { kind, count }| format!("{count} {kind}")).collect::<Vec<_>>()

@@ -18,7 +18,7 @@ pub(super) fn studio(args: StudioArgs, console: &mut Console) -> Result<Status, 
         let message = "a robot's file alone is not edited here: name it in a model, by `urdf:` or `mjcf:`";
         return Err(Failure::wrong(format!("{}: {message}", args.model.display())));
     }
-    // From now on Ctrl-C ends the session, and not the program wherever it is.
+    // From now on Ctrl-C ends the session, instead of the program at any point.
     interrupt::keep_results(true);
     let mut printed = Ok(());
     let mut started = |address: &str| {
@@ -43,7 +43,7 @@ pub(super) fn studio(args: StudioArgs, console: &mut Console) -> Result<Status, 
     Ok(Status::Done)
 }
 
-/// Opens the address in the browser of the desktop, where there is one: it is printed, too.
+/// Opens the address in the browser of the desktop, if there is one: it is printed, too.
 fn open(address: &str) {
     let (program, arguments): (&str, &[&str]) = if cfg!(target_os = "macos") {
         ("open", &[])

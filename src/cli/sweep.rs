@@ -15,8 +15,8 @@ use crate::model::Override;
 use crate::overview::{Align, Table};
 use crate::overview::{band, short};
 
-/// A parameter over a range: `l1=0.1..0.2:11`, perhaps with a unit and a tolerance behind it. `None` where the text has
-/// no range.
+/// A parameter over a range: `l1=0.1..0.2:11`, optionally followed by a unit and a tolerance. `None` if the text has no
+/// range.
 fn axis(text: &str) -> Result<Option<Axis>, Failure> {
     let Some((name, range)) = text.split_once('=') else { return Ok(None) };
     let Some((lower, rest)) = range.split_once("..") else { return Ok(None) };

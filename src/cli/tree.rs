@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use crate::grammar::JointCoordinate;
 use crate::model::{Description, ParameterValue, TreeJoint, TreeLink};
 
-/// A line a link: the joint that leads to it, its mass, and the uncertain values of both. Empty where there is no
+/// A line for each link: the joint that leads to it, its mass, and the uncertain values of both. Empty if there is no
 /// robot.
 pub(super) fn of(model: &Description) -> String {
     let Some(robot) = &model.robot else { return String::new() };
@@ -15,7 +15,7 @@ pub(super) fn of(model: &Description) -> String {
         let joint = link.joint.as_ref().map_or_else(String::new, joint);
         let mass = link.mass.map_or_else(String::new, |mass| format!(", {mass} kg"));
         let left_out = if link.place.is_none() { ", left out" } else { "" };
-        // A `String` takes all that is written.
+        // Writing to a `String` does not fail.
         let _ = writeln!(text, "{indent}{}{mass}{left_out}{joint}{}", link.name, uncertain(model, link));
     }
     text

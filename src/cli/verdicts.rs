@@ -9,7 +9,7 @@ use crate::export::{Suite, write_junit};
 use crate::model::{is_standard_input, shown};
 use crate::results::{RequirementSummary, Summary, Verdict};
 
-/// Where verdicts are collected for a file.
+/// Collector of verdicts for a file.
 pub(super) struct Junit {
     path: PathBuf,
     suites: Mutex<Vec<Suite>>,
@@ -20,7 +20,7 @@ impl Junit {
         Self { path, suites: Mutex::default() }
     }
 
-    /// Takes in a model's requirements, or why there are no verdicts.
+    /// Adds a model's requirements, or the reason why there are no verdicts.
     pub fn add(&self, model: &str, outcome: Result<&Summary, &str>) {
         let suite = match outcome {
             Ok(summary) => Suite::of_requirements(model, &summary.requirements),
@@ -29,14 +29,14 @@ impl Junit {
         self.suites.lock().unwrap_or_else(PoisonError::into_inner).push(suite);
     }
 
-    /// Writes all of them.
+    /// Writes all verdicts.
     pub fn write(&self) -> Result<(), Failure> {
         let suites = self.suites.lock().unwrap_or_else(PoisonError::into_inner);
         write_junit(&self.path, &suites).map_err(|error| Failure::failed(&error).of(&error))
     }
 }
 
-/// What the requirements come to.
+/// Status that follows from the requirements.
 pub(super) fn status(summary: &Summary) -> Status {
     let of = |requirement: &RequirementSummary| match requirement.verdict {
         Verdict::Holds => Status::Done,
@@ -70,7 +70,7 @@ pub(super) fn add_commands(summary: &mut Summary, path: &Path, given: &Given) {
     }
 }
 
-/// A word of a command line.
+/// Quotes a word of a command line.
 fn quoted(word: &str) -> String {
     let plain = |c: char| c.is_alphanumeric() || "_-./=+,:".contains(c);
     if word.chars().all(plain) { word.to_owned() } else { format!("'{}'", word.replace('\'', r"'\''")) }

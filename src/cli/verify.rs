@@ -40,7 +40,7 @@ pub(super) fn verify(args: &VerifyArgs, console: &mut Console) -> Result<Status,
     Ok(if found.is_verified() { Status::Done } else { Status::NotMet })
 }
 
-/// Prints the verdict, and a table a formulation.
+/// Prints the verdict, and a table for each formulation.
 fn overview(found: &Verification) -> String {
     let verdict = if found.is_verified() { "verified" } else { "not verified" };
     let mut text = format!("{BOLD}{}{BOLD:#}: {verdict}\n", found.model);

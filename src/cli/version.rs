@@ -1,8 +1,8 @@
-//! `mbint --version --verbose`: what this program is, for a report of a fault.
+//! `mbint --version --verbose`: identification of this program, for a report of a fault.
 
 use std::ffi::OsString;
 
-/// Of which commit it was built, where whoever built it said so.
+/// Commit from which it was built, if the build gave it.
 const COMMIT: Option<&str> = option_env!("MBINT_COMMIT");
 
 /// Whether the arguments ask for it, and for nothing else.

@@ -1,4 +1,4 @@
-//! `mbint run --watch`: runs again when a model's files change, and tells which bounds moved.
+//! `mbint run --watch`: runs again when a model's files change, and prints the bounds that moved.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -16,7 +16,7 @@ use super::{Failure, Status, interrupt};
 use crate::export::{Snapshot, moved, snapshot_table};
 use crate::model::{self, Changes, is_standard_input};
 
-/// Tells whether a file is as it was: when it was written, and its length; `None` where there is none.
+/// Identifies the state of a file: time of its last change, and length; `None` without a file.
 type Mark = Option<(SystemTime, u64)>;
 
 pub(super) fn watch(mut request: Request, console: &mut Console) -> Result<Status, Failure> {
@@ -26,7 +26,7 @@ pub(super) fn watch(mut request: Request, console: &mut Console) -> Result<Statu
     let is_quiet = request.quiet;
     let mut known: BTreeMap<String, Snapshot> = BTreeMap::new();
     loop {
-        // Before they are read: what changes meanwhile is seen.
+        // Before reading, so that changes in the meantime are seen.
         let before = marks(&request);
         let mut changes = String::new();
         let mut told = |_: &Path, job: &Job, done: Result<&Done, &Failure>| {
@@ -49,12 +49,12 @@ pub(super) fn watch(mut request: Request, console: &mut Console) -> Result<Statu
         if status == Status::Interrupted || !changed(&request, before) {
             return Ok(Status::Interrupted);
         }
-        // From now on what changed is enough.
+        // From now on the changes are enough.
         request.quiet = true;
     }
 }
 
-/// What moved of a model or a scene.
+/// Text for a model or a scene, with its moved bounds.
 fn told_of(name: &str, moves: &str) -> String {
     match moves {
         "" => format!("{BOLD}{name}{BOLD:#}: run again, and no bound moved by more than the stated errors\n"),
@@ -62,9 +62,9 @@ fn told_of(name: &str, moves: &str) -> String {
     }
 }
 
-/// Waits until a file is not as it was; `false` at an interruption.
+/// Waits until a file changes; `false` at an interruption.
 fn changed(request: &Request, before: BTreeMap<PathBuf, Mark>) -> bool {
-    // An interruption ends the waiting here, and not the program wherever it is.
+    // An interruption ends the waiting here, instead of the program at any point.
     interrupt::keep_results(true);
     while !interrupt::asked() {
         sleep(TUNING.between_looks_at_files);
@@ -77,7 +77,7 @@ fn changed(request: &Request, before: BTreeMap<PathBuf, Mark>) -> bool {
     false
 }
 
-/// Waits until the files stay as they are: an editor may write in parts, or put another file in place.
+/// Waits until the files are stable: an editor may write in parts, or replace a file.
 fn settle(request: &Request) {
     let mut last = marks(request);
     while !interrupt::asked() {
@@ -90,13 +90,13 @@ fn settle(request: &Request) {
     }
 }
 
-/// The models' files with those that they name.
+/// The models' files, and the files that they name.
 fn marks(request: &Request) -> BTreeMap<PathBuf, Mark> {
     let mut marks = BTreeMap::new();
     for path in &request.models {
         let reading = model::read_rooted(path, Changes::of(&request.given.overrides), request.given.root.as_deref());
         let named = reading.diagnostics.sources.all().map(|source| PathBuf::from(&source.name));
-        // The texts of the command line are no files.
+        // Texts of the command line are not files.
         let named = named.filter(|path| path.is_file()).chain([path.clone()]);
         marks.extend(named.map(|path| (path.clone(), mark_of(&path))));
     }

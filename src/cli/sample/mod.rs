@@ -24,7 +24,7 @@ pub(super) struct Sampling<'s> {
     pub given: &'s Given,
     pub scenes: &'s [String],
     pub points: &'s Points,
-    /// `None` where nothing is to be written.
+    /// `None` if nothing is to be written.
     pub output: Option<(&'s Path, SampleFormat)>,
     pub threads: Threads,
     pub quiet: bool,
@@ -54,14 +54,14 @@ pub(super) fn sample(args: SampleArgs, console: &mut Console) -> Result<Status, 
     sampling.run(console)
 }
 
-/// The file of the samples, and its format, which its name tells where nothing else does.
+/// The file of the samples, and its format, which follows from its name unless it is given.
 pub(super) fn target(output: Option<PathBuf>, format: Option<FileFormat>) -> (PathBuf, SampleFormat) {
     let is_csv = |path: &PathBuf| path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("csv"));
     let format = match format {
         Some(FileFormat::Csv) => SampleFormat::Csv,
         Some(FileFormat::Npz) => SampleFormat::Npz,
         None if output.as_ref().is_some_and(is_csv) => SampleFormat::Csv,
-        // A table can go on in a pipe.
+        // A table can be processed in a pipe.
         None if output.as_deref() == Some(Path::new("-")) => SampleFormat::Csv,
         None => SampleFormat::Npz,
     };
@@ -69,7 +69,7 @@ pub(super) fn target(output: Option<PathBuf>, format: Option<FileFormat>) -> (Pa
     (output.unwrap_or_else(|| PathBuf::from(name)), format)
 }
 
-/// Why samples are not there.
+/// Reasons why there are no samples.
 enum Ended {
     Run(RunError),
     Export(ExportError),
@@ -88,10 +88,10 @@ impl From<ExportError> for Ended {
 }
 
 impl Sampling<'_> {
-    /// Simulates missing samples and writes the file; leaves long tasks to shards where the study says so.
+    /// Simulates missing samples and writes the file; leaves long tasks to shards if the study asks for it.
     ///
     /// # Errors
-    /// Where the model, the points or the file are wrong, or a simulation fails.
+    /// If the model, the points or the file are wrong, or a simulation fails.
     pub fn run(&self, console: &mut Console) -> Result<Status, Failure> {
         let shown = self.model.display();
         let loaded = load::load_all(&[self.model.to_owned()], self.given, self.scenes, console)?;

@@ -13,17 +13,17 @@ use crate::numerics::{Design, MOST_AXES, ParameterBox};
 use crate::store::AskedPoints;
 use crate::syntax::table::{Cell, Table};
 
-/// The request.
+/// The requested points.
 #[derive(Clone, Debug, PartialEq)]
 pub(in crate::cli) enum Points {
-    /// Evenly over the tolerances.
+    /// Points spread evenly over the tolerances.
     Design { design: Design, count: usize },
     /// A table: its path, names of its columns, and its rows.
     Table { path: PathBuf, names: Vec<String>, rows: Vec<Vec<f64>> },
 }
 
 impl Points {
-    /// What the command line asks for; `None` where it asks for no points.
+    /// The points requested on the command line; `None` without a request.
     pub fn asked(args: &PointArgs) -> Result<Option<Self>, Failure> {
         match (&args.points, &args.design) {
             (Some(path), _) => Self::table(path).map(Some),
@@ -32,7 +32,7 @@ impl Points {
         }
     }
 
-    /// What a study's plan says.
+    /// The points of a study's plan.
     pub fn planned(asked: &AskedPoints) -> Result<Self, Failure> {
         match asked {
             AskedPoints::Table(path) => Self::table(path),
@@ -87,7 +87,7 @@ impl Points {
         Ok(Self::Table { path: path.to_owned(), names, rows })
     }
 
-    /// The same for a model's uncertain parameters, by name and unit.
+    /// The points for a model's uncertain parameters, given by name and unit.
     pub fn of<'p>(
         &'p self,
         parameters: &[(String, String)],
@@ -141,7 +141,7 @@ impl ModelPoints<'_> {
         }
     }
 
-    /// Parameters of some of them.
+    /// Parameters of a range of the points.
     pub fn at(&self, places: Range<usize>) -> Vec<Vec<f64>> {
         match self {
             Self::Design { design, count, domain } => {

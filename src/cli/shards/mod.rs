@@ -70,7 +70,7 @@ pub(super) fn plan(args: PlanArgs, console: &mut Console) -> Result<Status, Fail
     Ok(Status::Done)
 }
 
-/// `mbint merge`: the results, or the next round's plan.
+/// `mbint merge`: makes the results, or the next round's plan.
 pub(super) fn merge(args: MergeArgs, console: &mut Console) -> Result<Status, Failure> {
     let folder = StudyFolder::new(&args.study);
     let plan = folder.plan().map_err(|error| failed(&error))?;
@@ -99,7 +99,7 @@ pub(super) fn merge(args: MergeArgs, console: &mut Console) -> Result<Status, Fa
     Ok(status)
 }
 
-/// `mbint shard`: simulates what one shard has and is not there yet.
+/// `mbint shard`: simulates the missing parts of one shard.
 pub(super) fn shard(args: &ShardArgs, console: &mut Console) -> Result<Status, Failure> {
     let folder = StudyFolder::new(&args.study);
     let Plan { asked, shards, .. } = folder.plan().map_err(|error| failed(&error))?;
@@ -124,7 +124,7 @@ pub(super) fn shard(args: &ShardArgs, console: &mut Console) -> Result<Status, F
     let context = context(&model, &asked.set, shard.scene.as_deref(), asked.skip_infeasible);
     let store = PartStore::open(folder.path(), &context, Missing::Simulate).map_err(|error| failed(&error))?;
     let options = study::Options {
-        // Samples are of no method.
+        // Samples need no method.
         methods: if asked.points.is_some() { Some(Vec::new()) } else { methods(&asked)? },
         threads: args.threads.number(),
         skip_infeasible: asked.skip_infeasible,
@@ -161,7 +161,7 @@ pub(super) fn status(args: &StatusArgs, console: &mut Console) -> Result<Status,
     Ok(if missing.is_empty() { Status::Done } else { Status::Deferred })
 }
 
-/// What `mbint run` would be asked for.
+/// The corresponding request of `mbint run`.
 fn request(asked: &StudyRequest, threads: Threads, kept: KeptRun) -> Result<Request, Failure> {
     Ok(Request {
         witness: None,
@@ -190,7 +190,7 @@ fn request(asked: &StudyRequest, threads: Threads, kept: KeptRun) -> Result<Requ
     })
 }
 
-/// What certified bounds are to prove, if they are asked for.
+/// Claim of certified bounds, if they are requested.
 fn proof(asked: &StudyRequest) -> Option<Proof> {
     asked.certify.then_some(if asked.certify_scheme { Proof::Scheme } else { Proof::Motion })
 }

@@ -1,4 +1,4 @@
-//! Samples of a study on many machines, in place of bounds.
+//! Samples of a study on many machines, instead of bounds.
 
 use std::path::PathBuf;
 
@@ -11,7 +11,7 @@ use crate::cli::{Failure, Status};
 use crate::results::SampleFormat;
 use crate::store::{AskedPoints, StudyRequest};
 
-/// What a plan has to say of the points; `None` where bounds are asked for.
+/// The points for a plan; `None` if bounds are requested.
 pub(super) fn asked(args: &PointArgs) -> Result<Option<AskedPoints>, Failure> {
     // Errors are reported before anything is written.
     Points::asked(args)?;
@@ -21,7 +21,7 @@ pub(super) fn asked(args: &PointArgs) -> Result<Option<AskedPoints>, Failure> {
     Ok(args.design.clone().map(|design| AskedPoints::Design { design, seed: args.seed }))
 }
 
-/// Simulates or defers the missing samples of a study, and writes them where a file is given.
+/// Simulates or defers the missing samples of a study, and writes them if a file is given.
 pub(super) fn simulate(
     asked: &StudyRequest,
     kept: &KeptRun,

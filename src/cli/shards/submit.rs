@@ -35,7 +35,7 @@ pub(in crate::cli) fn submit(args: &SubmitArgs, console: &mut Console) -> Result
     Ok(Status::Done)
 }
 
-/// What the scripts of a round have in common.
+/// Common parts of the scripts of a round.
 struct Job<'a> {
     program: PathBuf,
     folder: PathBuf,
@@ -73,7 +73,7 @@ impl Job<'_> {
         self.sbatch("array.sh", "shards-%A_%a", &script, None)
     }
 
-    /// Merging, when all tasks of the array ended; it submits the next round where there is one.
+    /// Submits merging, to run when all tasks of the array have ended; it submits the next round if there is one.
     fn submit_merge(&self, array: Option<&str>) -> Result<String, String> {
         let (program, folder) = (quoted(&self.program), quoted(&self.folder));
         let output = self.output.as_ref().map_or_else(String::new, |output| format!(" --output {}", quoted(output)));
@@ -98,11 +98,10 @@ impl Job<'_> {
         written.map(|()| path.clone()).map_err(|error| format!("{}: {error}", path.display()))
     }
 
-    /// Submits a script of this name, with a log of that one. A directive in the script would need a quoting of its
-    /// own.
+    /// Submits a script of this name, with its log. Directives in the script would need a quoting of their own.
     fn sbatch(&self, name: &str, log: &str, script: &str, after: Option<&str>) -> Result<String, String> {
         let path = self.write(name, script)?;
-        // Slurm puts numbers in place of `%A`; twice, the sign stands for itself.
+        // Slurm replaces `%A` by numbers; `%%` is the sign itself.
         let folder = self.folder.join("logs").to_string_lossy().replace('%', "%%");
         let mut command = Command::new("sbatch");
         command
@@ -116,7 +115,7 @@ impl Job<'_> {
         if !done.status.success() {
             return Err(format!("`sbatch` refused {}: {}", path.display(), said(&done.stderr)));
         }
-        // Behind a semicolon stands the cluster's name.
+        // The cluster's name follows a semicolon.
         Ok(said(&done.stdout).split(';').next().unwrap_or_default().to_owned())
     }
 }
@@ -126,7 +125,7 @@ fn head(what: &str) -> String {
     format!("#!/bin/bash\n#SBATCH --job-name=mbint-{what}\n#SBATCH --open-mode=append\n")
 }
 
-/// Whether Slurm takes a path as it is.
+/// An error if Slurm cannot take a path unchanged.
 fn takes(path: &Path) -> Result<(), String> {
     let refused = path.to_str().is_none_or(|path| path.chars().any(|c| is_harmful(c) || "\n\t\\".contains(c)));
     if refused {
