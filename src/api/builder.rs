@@ -70,7 +70,7 @@ impl ModelBuilder {
         self.entry(6, name, formula)
     }
 
-    /// How time is stepped: `fields! { duration: 2, step: 1e-3 }`.
+    /// Settings of the time steps: `fields! { duration: 2, step: 1e-3 }`.
     #[must_use]
     pub fn simulation(self, simulation: impl Into<Value>) -> Self {
         self.key("simulation", simulation)

@@ -40,7 +40,7 @@ pub enum Error {
     /// A setting of a study, such as its time step, is outside of its range.
     #[error("{0}")]
     Setting(String),
-    /// It was asked to stop before there was a result.
+    /// A stop was requested before there was a result.
     #[error("interrupted before there were results")]
     Interrupted,
     /// Outputs have no derivatives by the parameters.

@@ -46,7 +46,7 @@ pub fn response_csv(times: &[f64], points: &[ResponsePoint]) -> Result<Vec<u8>, 
     writer.into_inner().map_err(|e| e.into_error().into())
 }
 
-/// Which tolerances matter for every response at every frequency and time:
+/// The tolerances that matter for every response at every frequency and time:
 /// `response,t,frequency,quantity,parameter,main,total,width_without`, as in `contributions.csv`.
 ///
 /// # Errors

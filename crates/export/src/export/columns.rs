@@ -1,5 +1,5 @@
-//! `columns.json` and `contributions.columns.json`: what the columns of `bounds.csv` and `contributions.csv` are, and
-//! their units.
+//! `columns.json` and `contributions.columns.json`: meanings and units of the columns of `bounds.csv` and
+//! `contributions.csv`.
 
 use serde::Serialize;
 

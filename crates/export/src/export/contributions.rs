@@ -92,7 +92,7 @@ pub fn contributions_svg(
         let [lower, upper] = extremes(&below, &above, &percent);
         let (group, label, panel) = (layer.group.clone(), layer.label.clone(), panel.id.clone());
         series.push(SeriesData { id, group, label, kind: "share", panel, time: None, lower, upper });
-        // The lowest layer's entry stands lowest.
+        // The lowest layer has the lowest entry.
         let at = (right + 14.0, TOP + 12.0 + ROW * (layers.len() - 1 - index) as f64);
         let (group, label) = (layer.group.clone(), layer.label.clone());
         legend = legend.add(Entry { group, label, sign: Sign::Area(Hue::Color(layer.color)) }.drawn(at));

@@ -33,7 +33,7 @@ const RIGHT: f64 = 20.0;
 pub(super) struct BandedCourse<'a> {
     /// Key of its group: begins with a letter, and has letters, digits and `-`.
     pub group: String,
-    /// Label of the course; empty where the labels of its bands suffice.
+    /// Label of the course; empty if the labels of its bands suffice.
     pub label: &'a str,
     pub hue: Hue,
     /// Width of the line, px.

@@ -7,7 +7,7 @@ use super::owned::SUMMARY;
 use crate::store::without;
 use crate::syntax::{Code, Coded};
 
-/// Why results could not be written.
+/// Reasons why results could not be written.
 #[derive(Debug, thiserror::Error)]
 pub enum ExportError {
     /// The folder cannot be made or locked.

@@ -126,7 +126,7 @@ pub(super) fn settle(dir: &Path) -> Result<(), ExportError> {
 /// # Errors
 /// If `waits` returns `false`.
 pub fn wait_for_folder(dir: &Path, waits: &mut dyn FnMut() -> bool) -> Result<(), ExportError> {
-    // Without access or locks there is no waiting.
+    // A folder that cannot be opened or locked is not waited for.
     let Ok(folder) = fs::File::open(dir) else { return Ok(()) };
     while let Err(fs::TryLockError::WouldBlock) = folder.try_lock() {
         if !waits() {

@@ -45,7 +45,7 @@ pub fn overlay_svg(caption: Caption, name: &str, scenes: &[SceneBounds]) -> Resu
                 let style = style(*index, format!("{}{method}", scene.name));
                 CourseBand { group: format!("scene-{index}"), band, style }
             });
-            // The bands of a scene show where its nominal course is, which would hide the others.
+            // The bands of a scene show its nominal course, which is thin and without a label then.
             let (label, width) = if bands.is_some() { ("", 0.5) } else { (scene.name, 1.4) };
             let (group, hue) = (format!("scene-{index}-nominal"), Hue::Color(Color::of(*index)));
             let bands = bands.into_iter().collect();

@@ -177,7 +177,7 @@ pub(super) fn finish(dir: &Path) -> Result<(), ExportError> {
 
 /// Removes a journal; a rest that cannot be removed does no harm.
 fn remove(journal: &Path) {
-    // Without its plan it is no journal.
+    // Without its plan it is not a journal.
     let _ = fs::remove_file(journal.join(PLAN));
     let _ = fs::remove_dir_all(journal);
 }

@@ -78,7 +78,7 @@ fn edges<'a>(index: usize, row: &SweptBounds<'a>) -> BandedCourse<'a> {
 /// An axis of a trade-off: its quantity, and its unit as models write it; numbers are in this unit.
 #[derive(Clone, Copy, Debug)]
 pub struct TradeAxis<'a> {
-    /// For people.
+    /// Name for people.
     pub name: &'a str,
     /// Empty for a number.
     pub unit: &'a str,
@@ -87,7 +87,7 @@ pub struct TradeAxis<'a> {
 /// A point of a trade-off with a name, such as the present tolerances.
 #[derive(Clone, Copy, Debug)]
 pub struct TradeMark<'a> {
-    /// For people.
+    /// Label for people.
     pub label: &'a str,
     /// Its position, in the units of the axes.
     pub at: (f64, f64),

@@ -34,8 +34,8 @@ pub fn in_words(error: &libloading::Error) -> String {
     format!("{error}{}", reason.unwrap_or_default())
 }
 
-/// Declares a struct of functions that are loaded from a library by their names; those of the other interface are not
-/// there.
+/// Declares a struct of functions that are loaded from a library by their names; those of the other interface are
+/// `None`.
 macro_rules! functions {
     ($(#[$attribute:meta])* $name:ident { always { $($field:ident = $symbol:literal : fn($($argument:ty),* $(,)?) $(-> $result:ty)?;)* }
      co_simulation { $($cs:ident = $cs_symbol:literal : fn($($cs_argument:ty),* $(,)?) -> $cs_result:ty;)* }
@@ -54,13 +54,13 @@ macro_rules! functions {
             /// Loads them.
             ///
             /// # Errors
-            /// Where the library cannot be loaded, or lacks one.
+            /// If the library cannot be loaded, or lacks a function.
             pub fn load(path: &std::path::Path, interface: crate::unit::Interface) -> Result<Self, super::Fault> {
                 let fault = |error: libloading::Error| super::Fault::Library(super::library::in_words(&error));
                 // SAFETY: the library's initialisers run, which the user trusts by naming the unit.
                 let library = unsafe { libloading::Library::new(path) }.map_err(fault)?;
                 let steps = interface == crate::unit::Interface::CoSimulation;
-                // SAFETY: types are those of the standard's header, and pointers are kept no longer than the library.
+                // SAFETY: types are those of the standard's header, and pointers do not outlive the library.
                 unsafe {
                     Ok(Self {
                         $($field: *library.get($symbol).map_err(fault)?,)*
@@ -77,17 +77,17 @@ macro_rules! functions {
 /// Calls a function of an instance and checks its status.
 macro_rules! call {
     ($self:ident, $field:ident, $symbol:literal $(, $argument:expr)*) => {{
-        // SAFETY: the instance is the library's own, slices are as long as said, and nothing is kept of arguments.
+        // SAFETY: the instance is the library's own, slices have the stated lengths, and no argument is stored.
         let status = unsafe { ($self.functions.$field)($self.instance $(, $argument)*) };
         super::checked($symbol, status)
     }};
 }
 
-/// The same of a function that only one interface has.
+/// Calls, likewise, a function that only one interface has.
 macro_rules! call_own {
     ($self:ident, $field:ident, $symbol:literal $(, $argument:expr)*) => {{
         match $self.functions.$field {
-            // SAFETY: as of `call`.
+            // SAFETY: as for `call`.
             Some(function) => super::checked($symbol, unsafe { function($self.instance $(, $argument)*) }),
             None => Err(super::Fault::Library(format!("it has no `{}`", $symbol))),
         }

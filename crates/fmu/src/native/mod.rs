@@ -26,7 +26,7 @@ pub enum Fault {
     /// There is no instance.
     #[error("`{0}` made no instance")]
     NoInstance(&'static str),
-    /// It ends its motion.
+    /// The unit ends its motion.
     #[error("it ends its motion at t = {0} s")]
     Terminated(f64),
     /// A value is not of the variable's type.

@@ -12,10 +12,10 @@ pub use variable::{BaseUnit, NumberType, Variable};
 /// Reasons why a file cannot be read as a unit.
 #[derive(Debug, thiserror::Error)]
 pub enum NotRead {
-    /// It cannot be read.
+    /// The file cannot be read.
     #[error("{0}")]
     File(#[from] std::io::Error),
-    /// It is no archive, or a damaged one.
+    /// The file is not an archive, or a damaged one.
     #[error("it is not a zip archive: {0}")]
     Archive(#[from] rawzip::Error),
     /// An entry cannot be read.

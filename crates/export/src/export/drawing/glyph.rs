@@ -17,7 +17,7 @@ const PITCH: f64 = 14.0;
 /// Half a spring's width, px.
 const SWING: f64 = 6.0;
 
-/// A coordinate as it is written.
+/// A coordinate rounded for the document.
 pub(super) fn px(value: f64) -> f64 {
     // No −0.
     (10.0 * value).round() / 10.0 + 0.0
@@ -140,7 +140,7 @@ fn bent_arrow(group: Group, about: Px, radius: f64) -> Group {
     group.add(Path::new().set("d", arc).set("class", "open")).add(head(end, Px::new(1.0, 0.0)))
 }
 
-/// A spring from end to end, or a ring where they meet.
+/// A spring from end to end, or a ring if they coincide.
 fn zigzag(from: Px, to: Px) -> Path {
     let whole = to - from;
     let Some(along) = whole.try_normalize(4.0 * SWING) else {

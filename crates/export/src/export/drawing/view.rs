@@ -8,7 +8,7 @@ pub(super) type Px = Vector2<f64>;
 /// A direction of view.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Projection {
-    /// For people: `from above (x, y)`.
+    /// Title for people: `from above (x, y)`.
     pub title: &'static str,
     /// Direction to the right on the paper.
     right: [f64; 3],
@@ -41,7 +41,7 @@ impl Projection {
         (0.5 * (least + most), most - least)
     }
 
-    /// How far positions reach up, m.
+    /// Vertical extent of positions, m.
     pub fn height(&self, positions: &[[f64; 3]]) -> f64 {
         self.extent(positions).1.y
     }
@@ -91,7 +91,7 @@ impl View {
         self.centre + Px::new(from_middle.x, -from_middle.y)
     }
 
-    /// A direction on the paper, of length one; `None` where it points at the reader.
+    /// A direction on the paper, of length one; `None` if it points at the reader.
     pub fn direction(&self, direction: [f64; 3]) -> Option<Px> {
         let flat = self.projection.flat(direction);
         let seen = flat.norm() > 1e-3 * Vector3::from(direction).norm();

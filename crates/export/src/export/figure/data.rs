@@ -69,7 +69,7 @@ pub struct SeriesData {
     pub id: String,
     /// Key of its group in all panels: groups and entries of the legend have it too.
     pub group: String,
-    /// For people.
+    /// Label for people.
     pub label: String,
     /// `nominal`, `bounds` or `error`.
     pub kind: &'static str,

@@ -17,7 +17,7 @@ const SIGN: f64 = 26.0;
 pub struct Entry {
     /// Key of its group, as in the series.
     pub group: String,
-    /// For people.
+    /// Label for people.
     pub label: String,
     /// Its sign.
     pub sign: Sign,

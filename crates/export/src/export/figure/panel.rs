@@ -17,7 +17,7 @@ const LIGHTER: f64 = 0.5;
 /// Distance of the lines of a hatched band, px.
 const HATCH: f64 = 6.0;
 
-/// How a band is drawn.
+/// Style of a band.
 #[derive(Clone, Debug)]
 pub struct Style {
     /// Label in the legend.
@@ -68,7 +68,7 @@ pub struct Named<'a> {
     pub id: &'a str,
     /// Key of its group in all panels.
     pub group: &'a str,
-    /// For people.
+    /// Title for people.
     pub title: &'a str,
 }
 
