@@ -31,7 +31,7 @@ const OBSERVED: [(&str, [&str; 3], f64, f64, f64); 6] = [
     ("Rforce", ["j.force.x", "j.force.y", "j.force.z"], -1.0, 1e-3, 1e-2),
 ];
 
-/// What a file has, with its unit.
+/// Quantity of a file, with its unit.
 fn quantity(file: &str) -> &'static str {
     match file {
         "Quat" => "Euler parameters",

@@ -7,8 +7,8 @@ use super::{Subject, curve, distance_from, nominal, order, richardson};
 /// Rounding over a thousand steps, with numbers of size 1 to 100.
 const ROUNDING: f64 = 1e-10;
 
-/// What rounding of positions (1e-16 m) makes of reactions: it is divided by βh² = 3e-5 s² and multiplied by masses,
-/// and its traces in the algorithmic accelerations fade slowly.
+/// Error of reactions by rounding of positions (1e-16 m), which is divided by βh² = 3e-5 s² and multiplied by masses;
+/// its traces in the algorithmic accelerations fade slowly.
 const ROUNDING_OF_FORCES: f64 = 1e-8;
 
 /// Asserts that an output has this closed form: exactly up to rounding.

@@ -70,7 +70,7 @@ impl Beam {
 }
 
 impl Matrices {
-    /// Constraint modes of the nodes that are kept, then the lowest normal modes with those held.
+    /// Constraint modes of the `kept` nodes, then the lowest normal modes with those nodes fixed.
     pub fn reduced(&self, kept: &[usize], modes: usize) -> Self {
         let nodes = self.mass.nrows() / OF_NODE;
         let rows = |of: &dyn Fn(usize) -> bool| -> Vec<usize> {

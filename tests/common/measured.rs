@@ -1,7 +1,7 @@
 //! Measurements for the verification report, which `cargo xtask verification` writes.
 //!
-//! With `MBINT_MEASURED=FILE` every case is a line of JSON at the end of FILE, else nothing is written. The limits that
-//! a figure keeps stand beside it: they are what the test asserts, and what the report compares with.
+//! With `MBINT_MEASURED=FILE` every case is a line of JSON at the end of FILE, else nothing is written. A figure is
+//! written with its limits: the test asserts them, and the report compares with them.
 
 use std::io::Write as _;
 

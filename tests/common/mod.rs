@@ -1,4 +1,4 @@
-//! What the tests share: reading, running, and looking at curves.
+//! Shared by the tests: reading, running, and comparing curves.
 
 pub mod adams;
 pub mod closed_forms;
@@ -45,7 +45,7 @@ pub fn load(path: &Path) -> Subject {
     Model::from_file(path).unwrap_or_else(|error| panic!("{error}")).into()
 }
 
-/// What `mbint run` runs of a file: its scenes or, where it has none, the model itself.
+/// Subjects of `mbint run` on a file: its scenes or, if it has none, the model itself.
 #[track_caller]
 pub fn load_all(path: &Path) -> Vec<Subject> {
     let whole = load(path);
@@ -134,7 +134,7 @@ pub fn band(output: &OutputBounds, method: Method) -> &Band {
     output.bands.iter().find(|band| band.method == method).unwrap()
 }
 
-/// Largest absolute value; NaN where there is one.
+/// Largest absolute value; NaN if any value is NaN.
 pub fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
     let larger =
         |largest: f64, value: f64| if largest.is_nan() || value.abs() <= largest { largest } else { value.abs() };

@@ -3,8 +3,8 @@
 use mbint::inner::elements::JointKind;
 use mbint::inner::model::EffectKind;
 
-/// What the examples name: of effects as in `explain --effects`, of joints as in their own test. Bodies that only turn
-/// are left out in space.
+/// Bodies, points and joints that the examples name: for effects as in `explain --effects`, for joints as in their own
+/// test. Bodies that only turn are omitted in space.
 pub struct Mechanism {
     ground: &'static str,
     pub bodies: &'static [&'static str],
@@ -105,8 +105,8 @@ impl Mechanism {
             _ => effects += &it,
         }
         let starts = if self.starts.is_empty() {
-            // What a start is nearest to weighs angles against lengths of the model's size, so that the wheel's angle
-            // is given.
+            // The distance of a start from the guess weighs angles against lengths of the model's size, so that the
+            // wheel's angle is given.
             let wheel = if spatial { "" } else { "wheel.angle: 0" };
             let index = if spatial { ["0.5, bob.z: 0", "0, follower.z: 0"] } else { ["0.5", "0.03"] };
             format!(

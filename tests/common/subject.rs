@@ -1,4 +1,4 @@
-//! A model under test, and what a test asks of it.
+//! A model under test, and the questions of a test about it.
 
 use std::sync::Arc;
 
@@ -7,12 +7,12 @@ use mbint::{Formulation, Method, Model, RangeKind, SchemeChoice, Study};
 
 type Ask = Arc<dyn Fn(Study<'static>) -> Study<'static> + Send + Sync>;
 
-/// A model with what a test changes of its study, for tests that vary one thing.
+/// A model with a test's changes of its study, for tests that vary one thing.
 #[derive(Clone)]
 pub struct Subject {
     pub model: Model,
     asked: Vec<Ask>,
-    /// What its outputs are called, where a test chose them by their formulas.
+    /// Names of its outputs, if a test chose them by their formulas.
     formulas: Vec<String>,
 }
 
@@ -74,7 +74,7 @@ impl Subject {
         self.scheme(SchemeChoice::Hht)
     }
 
-    /// These outputs instead of the model's, called by their formulas.
+    /// These outputs instead of the model's, named by their formulas.
     #[track_caller]
     pub fn observing(mut self, formulas: &[&str]) -> Self {
         let plain = |formula: &str| {
@@ -106,17 +106,17 @@ impl Subject {
         self.with(parameter, format!("± {}%", 100.0 * relative))
     }
 
-    /// Chebyshev bounds of the expanded outputs, of this order in every parameter, beside others.
+    /// Adds Chebyshev bounds of the expanded outputs, of this order in every parameter.
     pub fn chebyshev(self, order: usize, range: RangeKind) -> Self {
         self.asking(move |study| study.chebyshev(order).range(range))
     }
 
-    /// Taylor bounds of this order, beside others.
+    /// Adds Taylor bounds of this order.
     pub fn taylor(self, order: usize) -> Self {
         self.asking(move |study| study.taylor(order))
     }
 
-    /// A scan, beside others.
+    /// Adds a scan.
     pub fn scan(self, points: usize) -> Self {
         self.asking(move |study| study.scan(points))
     }

@@ -133,7 +133,7 @@ simulation: {{ duration: 1 }}
     }
 }
 
-/// A preload pulls where it is positive; a cylinder pushes by its pressures.
+/// A positive preload pulls; a cylinder pushes by its pressures.
 #[test]
 fn a_preload_is_a_tension_and_a_cylinder_pushes() {
     let at_start = |element: &str| {

@@ -1,4 +1,4 @@
-//! Bushings: what springs store and dampers take.
+//! Bushings: energy stored by springs and taken by dampers.
 
 use crate::common::power::{APART, APART_IN_SPACE, assert_balance, pair, spatial_pair};
 

@@ -55,7 +55,7 @@ fn compare(follower: &str, bounds: &Bounds, first: usize, tolerance: f64, law: i
     check("contact", 1.0, &|t| push(t).abs() * if is_flat { 1.0 } else { 1.0_f64.hypot(tangent(t)) });
     check("side", 1.0, &|t| if is_flat { 0.0 } else { push(t) * tangent(t) });
     check("tilt", BASE, &|t| if is_flat { -push(t) * at(t)[1] } else { 0.0 });
-    // What the motor gives is what lifts the mass.
+    // The motor's work lifts the mass.
     check("torque", BASE, &|t| push(t) * at(t)[1]);
 }
 

@@ -10,7 +10,7 @@ use crate::common::{curve, largest, nominal, read};
 /// Speed of the carriage, m/s; it goes by 4 m in the run, the beam bends by 1 cm.
 const SPEED: f64 = 20.0;
 
-/// Largest change, as a share of the largest value: positions of metres round off what millimetres of 1 MN/m make.
+/// Largest change, as a share of the largest value, by rounding of metres in forces of millimetres times 1 MN/m.
 const MOST: f64 = 1e-8;
 
 const STEEL: Beam =

@@ -80,7 +80,7 @@ fn a_loose_pin_stays_in_its_bearing_and_the_slider_near_its_place() {
         let apart = distance(curve(&bounds, "slider.x"), curve(&tight, "x"));
         println!("slider off by {apart:.3e}");
         assert!(apart < 1.2e-4 * 1.1 + deepest && apart > 2e-5, "{apart:e}");
-        // What drives it is the ideal torque, blows apart.
+        // The mean drive is the ideal torque, without the blows.
         let from = row(&bounds, SETTLED);
         let mean = |torque: &[f64]| torque[from..].iter().sum::<f64>() / (torque.len() - from) as f64;
         let (loose, ideal) = (mean(curve(&bounds, "drive.torque")), mean(curve(&tight, "torque")));
@@ -106,7 +106,7 @@ fn the_clearance_may_be_uncertain() {
     let x = output(&bounds, "x");
     let scan = band(x, Method::Scan);
     let widest = scan.upper.iter().zip(&scan.lower).map(|(upper, lower)| upper - lower).fold(0.0, f64::max);
-    // Three clearances from 0.05 to 0.15 mm: the slider is within the largest of its place.
+    // Three clearances from 0.05 to 0.15 mm: the slider deviates from its position by at most the largest.
     assert!(widest > 2e-5 && widest < 4e-4, "{widest:e}");
     assert!(scan.lower.iter().chain(&scan.upper).all(|value| value.is_finite()));
 }

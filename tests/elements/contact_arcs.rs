@@ -26,8 +26,7 @@ fn assert_same(a: &Bounds, b: &Bounds, names: &[&str]) {
     for name in names {
         let [one, other] = [a, b].map(|bounds| curve(bounds, name));
         let size = largest(other.iter().copied()).max(1.0);
-        // Of a force 1e-6 is what 1e-10 m make, which is as far as Newton's iteration goes; a bore's wall is 5e-9 of
-        // its clearance off.
+        // Newton's iteration stops at 1e-10 m, which are 1e-6 of a force; a bore's wall is 5e-9 of its clearance off.
         let allowed = if matches!(*name, "force" | "friction") { 5e-5 } else { 2e-6 };
         assert!(distance(one, other) < allowed * size, "{name}: {:e} of {size}", distance(one, other));
     }
@@ -50,7 +49,7 @@ fn an_arc_is_a_part_of_a_circle() {
     assert_same(&hill, &ball("circle: 0.32", start, speed), &["x", "y", "angle"]);
 }
 
-/// A polygon with round ends is a capsule: where arcs go on as the edges did there is no corner.
+/// A polygon with round ends is a capsule: there is no corner where arcs continue the edges.
 #[test]
 fn arcs_join_edges_smoothly() {
     let stadium = "polygon: [[-0.2, 0.1], { to: [-0.3, 0], radius: 0.1 }, { to: [-0.2, -0.1], radius: 0.1 }, [0.2, -0.1], { to: [0.3, 0], radius: 0.1 }, { to: [0.2, 0.1], radius: 0.1 }], rounding: 0.02";

@@ -1,5 +1,5 @@
-//! Contacts that become too deep, and surfaces that pass through one another within a step: the run says so, and flags
-//! what follows.
+//! Contacts that become too deep, and surfaces that pass through one another within a step: the run reports it, and
+//! flags the following rows.
 
 use mbint::results::{Bounds, Method, Summary};
 

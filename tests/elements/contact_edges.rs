@@ -76,8 +76,8 @@ fn both_sides_of_a_groove_push() {
     assert!(largest(curve(&bounds, "x").iter().copied()) < 1e-9);
 }
 
-/// A billiard: without loss or friction the speed across a corner's normal stays, that along it is turned about. While
-/// they touch the normal turns, by what the ball goes in that time over the radii: as K^−0.4.
+/// A billiard: without loss or friction the speed across a corner's normal stays, that along it is turned about. During
+/// the contact the normal turns by the ball's way over the radii: as K^−0.4.
 #[test]
 fn a_corner_reflects() {
     // The normal is 30° from the vertical: the ball leaves at 60°.

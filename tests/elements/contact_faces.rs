@@ -61,12 +61,12 @@ fn a_cylinder_rolls_on_a_face_and_on_a_bar() {
     }
 }
 
-/// Standing over an edge it falls where its middle is beyond it.
+/// A body that stands over an edge tips if its middle is beyond the edge.
 #[test]
 fn what_stands_over_an_edge_tips_beyond_its_middle() {
     let cube = "box: [0.2, 0.2, 0.5]";
     for (shape, inertia) in [(UPRIGHT, OF_CYLINDER), (cube, "[0.0483, 0.0483, 0.0133]")] {
-        // Of a box and a hull the edges are those of the block.
+        // A box on a hull has the edges of a box on the block.
         let surfaces = if shape == cube { &[SLAB][..] } else { &[SLAB, SLAB_AS_HULL] };
         for surface in surfaces {
             let tilt = |x: f64| {
@@ -102,7 +102,7 @@ fn a_box_stands_on_a_face() {
     }
 }
 
-/// A plank across a beam rests on the four places where edges cross, and tips where its middle is beyond the beam.
+/// A plank across a beam rests on the four crossings of edges, and tips if its middle is beyond the beam.
 #[test]
 fn a_plank_lies_across_a_beam() {
     let plank = "box: [1, 0.2, 0.05], radius: 1 mm";
@@ -152,7 +152,7 @@ simulation: {{ duration: 0.4, step: 1e-3, output_step: 0.1 }}
     assert!(last(&bounds, "w").abs() < 1e-3, "{}", last(&bounds, "w"));
 }
 
-/// What flies into a surface at rest along a normal through its middle flies back as fast, and does not turn: an edge
+/// A body that hits a surface at rest along a normal through its middle flies back as fast, and does not turn: an edge
 /// on an edge across it, a corner on the side of a cylinder, a corner on a corner, a box on a bar and on a ball.
 #[test]
 fn central_impacts_reverse_the_speed() {
@@ -191,7 +191,7 @@ simulation: {{ duration: 0.02, step: 5e-6, output_step: 1e-4 }}
     }
 }
 
-/// What passes a corner just beside it goes straight on; what touches it a little is as fast as before.
+/// A body that narrowly misses a corner goes straight on; one that touches it a little is as fast as before.
 #[test]
 fn a_corner_is_grazed() {
     for shape in ["cylinder: [[0, 0.02, -0.25], [0, 0.02, 0.25]], radius: 0.1", "box: [0.2, 0.2, 0.3], radius: 0"] {

@@ -94,8 +94,7 @@ joints:
         for name in ["x", "y", "spin", "force", "rate"] {
             let [a, b] = [&by_motor, &by_height].map(|bounds| curve(bounds, name));
             let size = largest(a.iter().copied()).max(1.0);
-            // Of a force 1e-7 is what 1e-10 m make, which is as far as Newton's iteration goes; a motor's velocity is
-            // off by h².
+            // Newton's iteration stops at 1e-10 m, which are 1e-7 of a force; a motor's velocity is off by h².
             let allowed = if slope.is_empty() && !matches!(name, "force" | "rate") { 1e-7 } else { 1e-6 };
             assert!(distance(a, b) < allowed * size, "{slope} {name}: {:e} of {size}", distance(a, b));
         }

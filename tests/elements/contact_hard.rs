@@ -3,8 +3,8 @@
 use crate::common::runge_kutta::runge_kutta;
 use crate::common::{curve, largest, nominal, read, row};
 
-/// Housner's block (*Bull. Seismol. Soc. Am.* 53 (1963) 403): about a corner 4/3 m R² θ̈ = −m g R sin(α − θ); what
-/// lands on the other corner without rebound goes on with 1 − 3/2 sin² α of its angular velocity.
+/// Housner's block (*Bull. Seismol. Soc. Am.* 53 (1963) 403): about a corner 4/3 m R² θ̈ = −m g R sin(α − θ); a block
+/// that lands on the other corner without rebound continues with 1 − 3/2 sin² α of its angular velocity.
 #[test]
 fn a_block_rocks_on_its_corners() {
     let (half_width, half_height, g) = (0.1_f64, 0.4_f64, 9.81);
@@ -90,8 +90,8 @@ simulation: {{ duration: 2, step: 1e-3, output_step: 0.05 }}
     assert!(largest(curve(&bounds, "vy")[half..].iter().copied()) < 1e-7);
 }
 
-/// A ball that passes a post just beside it goes straight on; one that touches it a little is turned little, and as
-/// fast as before.
+/// A ball that narrowly misses a post goes straight on; one that touches it a little is turned little, and as fast as
+/// before.
 #[test]
 fn a_ball_grazes_a_post() {
     let thrown = |depth: f64| {

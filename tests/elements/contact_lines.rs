@@ -60,7 +60,7 @@ fn gaps_are_least_distances() {
         let bounds = flight("spatial", ["[-0.2, 0, 0.1]", "[0.3, 0.1, 0]"], capsule, start);
         cases.push((bounds, [[-0.4, 0.1, 0.0], [0.5, 0.0, 0.1]]));
     }
-    // Parallel all the way, beside it and past its end.
+    // Parallel all the way, next to the capsule and past its end.
     let bounds = flight(
         "spatial",
         ["[-0.45, 0.05, -0.05]", "[0.45, -0.05, 0.05]"],
@@ -174,13 +174,13 @@ simulation: { duration: 0.012, step: 2e-6, output_step: 1e-3 }
     ));
     let last = bounds.times.len() - 1;
     let of = |name: &str| curve(&bounds, name)[last];
-    // Of equal masses one takes over the other's velocity.
+    // Equal masses exchange their velocities.
     assert!((of("lower") + 1.0).abs() < 1e-5 && of("box").abs() < 1e-5 && of("spin").abs() < 1e-6, "{} {}", of("lower"), of("box"));
     assert!((of("energy") - 0.5).abs() < 1e-6);
 }
 
-/// Two crossed bars hit beside their middles: the normal velocity of the places that touch is reversed, by an impulse
-/// of 2 v/(1/m₁ + 1/m₂ + a²/I₁ + b²/I₂).
+/// Two crossed bars hit off their middles: the normal velocity of the touching points is reversed, by an impulse of 2
+/// v/(1/m₁ + 1/m₂ + a²/I₁ + b²/I₂).
 #[test]
 fn crossed_bars_impact_as_billiard_balls() {
     let bounds = nominal(&read(

@@ -15,7 +15,7 @@ fn sum(a: Point, b: Point, share: f64) -> Point {
     [0, 1, 2].map(|axis| a[axis] + share * b[axis])
 }
 
-/// What lies within a reach of the convex hull of points, or of discs about them.
+/// The points within `reach` of the convex hull of points, or of discs about them.
 struct Body {
     /// Its keys in a contact.
     keys: &'static str,
@@ -120,7 +120,7 @@ fn seconds() -> [(&'static str, Body); 5] {
     ]
 }
 
-/// Shapes of the first body; what lies below a plane is a long prism.
+/// Shapes of the first body; the region below a plane is a long prism.
 fn firsts() -> [(&'static str, Body); 5] {
     let tetrahedron = [[-0.2, -0.1, -0.1], [0.3, -0.1, -0.1], [0.0, 0.3, -0.1], [0.0, 0.0, 0.25]];
     [

@@ -117,8 +117,7 @@ simulation: {{ duration: 2, step: 1e-4, output_step: 1e-3 }}
     assert!(off < 1e-4, "{off:e}");
 }
 
-/// A ball beside, over and about the rim of a cylinder: the gap is the least distance by brute force, the side and the
-/// face as they are.
+/// A ball next to, over and about the rim of a cylinder: the gap is the least distance from its section by brute force.
 #[test]
 fn gaps_to_a_ball_are_least_distances() {
     let bounds = nominal(&read(&format!(

@@ -35,7 +35,7 @@ fn assert_same(a: &Bounds, b: &Bounds, names: &[&str]) {
         let (one, other) = (curve(a, name), curve(b, name));
         let error = largest(one.iter().zip(other).map(|(a, b)| a - b));
         let size = largest(other.iter().copied());
-        // Of a force of 1e6 N/m^1.5 that is what 1e-10 m make, which is as far as Newton's iteration goes.
+        // Newton's iteration stops at 1e-10 m, which are this share of a force with 1e6 N/m^1.5.
         let allowed = if matches!(*name, "force" | "friction") { 1e-6 } else { 1e-7 };
         assert!(error <= allowed * size.max(1.0), "{name}: {error:e} of {size}");
     }
@@ -67,7 +67,7 @@ fn a_capsule_is_a_cylinder_and_two_spheres() {
     assert_same(&thrown("ground.middle", &long, start, speed), &cylinder, &ALL);
     let (start, speed) = ([0.52, 0.01, 0.4], [0.0, 0.0, -0.5]);
     let sphere = thrown("ground.end", "circle: 0.05", start, speed);
-    // Of the middle's axes, −z points down and away from the ball.
+    // In the axes of the middle, −z points down and away from the ball.
     for (from, to) in [("[0, 0, 0]", "[0, 0, -3]"), ("[0, 0, -3]", "[0, 0, 0]")] {
         let capsule = format!("capsule: [{from}, {to}], rounding: 0.05");
         assert_same(&thrown("ground.end", &capsule, start, speed), &sphere, &["x", "y", "z", "force", "friction"]);
@@ -112,7 +112,7 @@ fn corners_are_spheres() {
     let (start, speed) = ([0.51, 0.22, 0.6], [0.0, 0.0, -0.5]);
     let sphere = thrown("ground.corner", "circle: 0.05", start, speed);
     let block = thrown("ground", "block: [1, 0.4, 0.4], rounding: 0.05", start, speed);
-    // Below its height the corner goes on as an edge.
+    // Below its height the corner continues as an edge.
     let beside = curve(&sphere, "z").iter().position(|z| *z < 0.2).unwrap_or(400);
     for name in ALL {
         let off = largest(curve(&block, name)[..beside].iter().zip(curve(&sphere, name)).map(|(a, b)| a - b));
@@ -166,7 +166,7 @@ simulation: {{ duration: 1, step: 1e-3, output_step: 0.1 }}
     let last = row(&bounds, 1.0);
     let of = |name: &str| curve(&bounds, name)[last];
     assert!((of("floor") - 7.0 * 9.81).abs() < 1e-3 && (of("joint") - 2.0 * 9.81).abs() < 1e-3, "{} {}", of("floor"), of("joint"));
-    // The lower one tilts by M/4Ka² = 4.4e-5 under the load beside its middle, and the upper one with it.
+    // The lower one tilts by M/4Ka² = 4.4e-5 under the load off its middle, and the upper one with it.
     assert!((of("x") - 0.02).abs() < 3e-5 && of("w").abs() < 1e-5 && (of("z") - 0.32).abs() < 1e-3, "{} {}", of("x"), of("z"));
 }
 

@@ -46,7 +46,7 @@ fn without_inductance_it_is_a_lag() {
     for (motor, volts) in [("", 12.0), ("limit: 6", 6.0)] {
         let bounds = run(&read(&drive(motor, "step: 1e-3")));
         let rate = |k: f64, t: f64| volts / (20.0 * k) * (1.0 - (-t * (20.0 * k).powi(2) / 0.24).exp());
-        // Of a limit it comes within 1e-4 at twice of it.
+        // The voltage at a smooth limit is within 1e-4 of it at twice the limit.
         let exact = if volts == 12.0 { 1e-5 } else { 1e-3 };
         assert!(distance_from(&bounds.times, curve(&bounds, "w"), |t| rate(0.05, t)) < exact);
         let band = band(output(&bounds, "w"), Method::Chebyshev);

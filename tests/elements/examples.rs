@@ -5,7 +5,7 @@ use mbint::Model;
 use crate::common::registry::joints;
 use crate::common::{Subject, nominal};
 
-/// What the examples of joints name, each body by itself.
+/// Mechanism that the examples of joints name, each body by itself.
 const MECHANISM: &str = "
 space: SPACE
 bodies:

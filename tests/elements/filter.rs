@@ -4,7 +4,7 @@ use mbint::results::Method;
 
 use crate::common::{band, curve, largest, nominal, output, read, run};
 
-/// Filters beside a mass that hangs still.
+/// A model of filters and a mass that starts at rest.
 fn filters(effects: &str, outputs: &str, simulation: &str) -> String {
     format!(
         "
@@ -80,8 +80,8 @@ fn a_filter_of_order_four_is_that_of_scipy() {
     }
 }
 
-/// A spring that feels where the mass was: the filter begins settled at the mass's place. SciPy as above, with the
-/// filter in another form (a chain of rates, the output their sum).
+/// A spring that acts on the filtered position: the filter starts settled at the mass's position. SciPy as above, with
+/// the filter in another form (a chain of rates, the output their sum).
 #[test]
 fn a_filter_within_the_loop_moves_as_scipy_says() {
     let effects = "felt: { filter: { input: m.x, numerator: [0.05 s, 1], denominator: [0.01 s^2, 0.14 s, 1], initial: 0.5 m } },
@@ -100,7 +100,7 @@ fn a_filter_within_the_loop_moves_as_scipy_says() {
     }
 }
 
-/// Whatever the filter is, it stays where it has settled: at the gain of constant inputs.
+/// Any filter stays at its settled value: the gain times its constant input.
 #[test]
 fn a_settled_filter_stays() {
     for (numerator, denominator, gain) in [

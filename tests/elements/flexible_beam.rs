@@ -137,8 +137,8 @@ fn a_moment_bends_a_cantilever_to_a_circle() {
     assert!(order(errors[1], errors[2]) > 3.8 && errors[2] < 1e-5, "{errors:?}");
 }
 
-/// Circular frequencies of a beam of length 1, EI = 1, μ = 1, from M and K of the straight beam; `held` coordinates do
-/// not move.
+/// Circular frequencies of a beam of length 1, EI = 1, μ = 1, from M and K of the straight beam; `held` coordinates are
+/// fixed.
 fn frequencies(elements: usize, held: &[&str]) -> Vec<f64> {
     let description = read(&format!(
         "
@@ -286,8 +286,8 @@ simulation: { duration: 3, step: 1e-3, output_step: 0.01 }
 }
 
 /// Kane, Ryan & Banerjee's and Simo & Vu-Quoc's manoeuvre (J. Appl. Mech. 53 (1986) 849): a beam is turned about its
-/// end from rest to 6 rad/s within 15 s. Its tip lags by 0.574 m (0.58 in their plots), then swings about its place;
-/// the centrifugal force stretches it by tan(kL)/k − L, k = ω √(μ/EA): 5.14e-4 m.
+/// end from rest to 6 rad/s within 15 s. Its tip lags by 0.574 m (0.58 in their plots), then swings about its straight
+/// position; the centrifugal force stretches it by tan(kL)/k − L, k = ω √(μ/EA): 5.14e-4 m.
 #[test]
 fn a_beam_is_spun_up() {
     let (length, mass, axial, omega) = (10.0, 1.2, 2.8e7_f64, 6.0);
@@ -328,7 +328,7 @@ simulation: {{ duration: 20, step: 5e-3, output_step: 0.05 }}
             assert!((steady / expected - 1.0).abs() < 0.005, "{steady:e} {expected:e}");
         }
     }
-    // Each time as many elements bring it nearer.
+    // Each doubling of the elements brings it nearer.
     assert!((lags[3] - lags[2]).abs() < 0.1 * (lags[2] - lags[1]).abs(), "{lags:?}");
 }
 
@@ -410,7 +410,7 @@ simulation: {{ duration: 0.5, step: 1e-3, output_step: 1e-3 }}
     assert!(failure.contains("beam `rod` (it starts straight unless `initial` gives all coordinates of all its nodes)"));
 }
 
-/// Joint coordinates do not carry what bends.
+/// Joint coordinates are refused for bodies that bend.
 #[test]
 fn a_beam_has_absolute_coordinates() {
     let run = "duration: 1, formulation: joint";

@@ -35,7 +35,7 @@ fn its_reactions_do_no_work() {
     assert_balance(&pair("  j: { gear: { between: [a, b], ratio: -2, offset: 0.1 } }", "  spring: { spring_damper: { between: [ground.O, b], stiffness: 30, free_length: 0.2 } }", "  b.x: 0.9\n  b.y: 0.5\n  b.vx: -0.4\n  b.vy: 0.8"), "0");
 }
 
-/// A ratio does not tell where teeth touch: what asks for the reaction of a bearing is refused, with the reason.
+/// A ratio does not determine where teeth touch: the reaction of a bearing is refused, with the reason.
 #[test]
 fn the_reaction_of_a_bearing_is_refused() {
     let text = |what: &str| {

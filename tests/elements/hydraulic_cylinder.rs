@@ -21,7 +21,8 @@ simulation: {{ output_step: 0.05, {simulation} }}
     )
 }
 
-/// SciPy 1.17, `solve_ivp`, DOP853, rtol 1e-12 (Radau at 1e-9 agrees in seven digits): place, velocity and pressures.
+/// SciPy 1.17, `solve_ivp`, DOP853, rtol 1e-12 (Radau at 1e-9 agrees in seven digits): position, velocity and
+/// pressures.
 #[test]
 fn a_cylinder_behind_its_valve_moves_as_scipy_says() {
     let wanted = [
@@ -96,7 +97,7 @@ fn sealed_oil_is_a_spring() {
     }
     let volumes = areas.map(|area| area * 0.3 + 2e-4);
     let stiffness: f64 = areas.iter().zip(volumes).map(|(area, volume)| 1e9 * area * area / volume).sum();
-    // From 3 cm/s about the place where the pressures are in balance, within 0.1 % of its frequency.
+    // From 1 mm/s about the position where the pressures are in balance, within 0.1 % of its frequency.
     let balanced = 50e5 * areas[0] / areas[1];
     let cylinder = format!("rod: 25 mm, valve: 0, supply: 160 bar, piston_pressure: 50 bar, rod_pressure: {balanced}, modulus: 1 GPa");
     let text = carriage(&cylinder, "", "duration: 0.2, step: 1e-4").replace("carriage.vx: 0", "carriage.vx: 0.001");
@@ -145,7 +146,7 @@ simulation: { duration: 0.4, step: 1e-3, output_step: 0.02 }
     assert!(largest(angle.iter().map(|angle| angle - 0.1)) > 0.02, "it moves");
 }
 
-/// What the chapter says of its example.
+/// The chapter shows its example and the figures of the example.
 #[test]
 fn the_chapter_shows_its_example() {
     let text = include_str!("../../docs/examples/boom.yaml");

@@ -1,6 +1,6 @@
 //! Friction in joints, against closed forms and against the same mechanics written down another way.
 //!
-//! What the smooth law leaves of Coulomb's is ½ (u₀/u)² of it: the bounds of errors below are made of that.
+//! The smooth law is short of Coulomb's by the share ½ (u₀/u)²: the bounds of errors below follow from that.
 
 use mbint::results::Method;
 
@@ -57,7 +57,7 @@ outputs: {{ angle: rod.angle, load: rubbing.load }}
 simulation: {{ duration: 2, step: 1e-3, output_step: 0.01 }}
 "
     ));
-    // θ from the horizontal; centre at l (cos θ, sin θ). N is what accelerates it and carries its weight.
+    // θ from the horizontal; centre at l (cos θ, sin θ). N accelerates the rod and carries its weight.
     let load = |theta: f64, omega: f64, alpha: f64| {
         let (s, c) = theta.sin_cos();
         let x = m * l * (-alpha * s - omega * omega * c);
@@ -97,7 +97,7 @@ simulation: {{ duration: 2, step: 1e-3, output_step: 0.01 }}
     assert!(left < 1e-7, "{left:e}");
 }
 
-/// A drawer that is pulled beside its middle: the couple F e presses on both ends of a guide of length L, and
+/// A drawer that is pulled off its middle: the couple F e presses on both ends of a guide of length L, and
 /// m a = F (1 − 2 μ e/L).
 #[test]
 fn a_drawer_sticks_by_the_couple_on_its_guide() {

@@ -214,7 +214,7 @@ fn two_motors_agree_or_contradict() {
     }
 }
 
-/// What a digital controller holds makes ramps of the speed: ẏ = 10 k T in the k-th period of T = 0.1 s.
+/// A number held by a digital controller makes ramps of the speed: ẏ = 10 k T in the k-th period of T = 0.1 s.
 #[test]
 fn a_held_number_makes_ramps_of_the_speed() {
     let acceleration = |t: f64| ((t + 1e-9) / 0.1).floor();

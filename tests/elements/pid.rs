@@ -46,7 +46,7 @@ fn a_limited_controller_moves_as_scipy_says() {
     }
 }
 
-/// Without filter and limit it is what three lines of `states` and `torque` say; the gain is uncertain in both.
+/// Without filter and limit it equals three lines of `states` and `torque`; the gain is uncertain in both.
 #[test]
 fn it_is_what_states_write_out() {
     let bounds = run(&read(&arm("initial: 2 N*m", "step: 1e-3", "")));
@@ -91,7 +91,8 @@ simulation: { duration: 12, step: 2e-3, output_step: 1 }
     }
 }
 
-/// A target that follows another joint, with the rate of that: what `states` and a torque write out.
+/// A target that follows another joint, with the rate of that joint: the same as `states` and a torque that write it
+/// out.
 #[test]
 fn a_target_may_follow_a_joint() {
     let text = |states: &str, drive: &str| {

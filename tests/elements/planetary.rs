@@ -41,8 +41,8 @@ fn run(members: &[&str]) -> Bounds {
     nominal(&read(&text(members, &joints, &format!("{{ {}, ratio: 60/20 }}", set.join(", ")))))
 }
 
-/// With the ring held the carrier turns 1 + ρ times slower than the sun; with the carrier held the ring turns
-/// backwards; with the sun held the carrier turns with the ring. The driven member feels the other's inertia by the
+/// With the ring fixed the carrier turns 1 + ρ times slower than the sun; with the carrier fixed the ring turns
+/// backwards; with the sun fixed the carrier turns with the ring. The driven member feels the other's inertia by the
 /// square of the ratio.
 #[test]
 fn two_members_turn_in_a_ratio() {
@@ -61,8 +61,8 @@ fn two_members_turn_in_a_ratio() {
     }
 }
 
-/// Planets that spin: a body with an angle alone, by an equation. With ρ = 3 they have as many teeth as the sun, so
-/// that ω_p = 2 ω_c − ω_s = −ω_s/2 where the ring is held.
+/// Planets that spin: a body with an angle alone, by an equation. With ρ = 3 planets and sun have the same number of
+/// teeth, so that ω_p = 2 ω_c − ω_s = −ω_s/2 if the ring is fixed.
 #[test]
 fn spinning_planets_are_a_body_of_their_own() {
     let of_planets = 0.09;
@@ -112,7 +112,7 @@ fn what_is_no_set_is_refused() {
     }
 }
 
-/// What can be read, but is no set where it is assembled.
+/// Models that can be read, but whose axes make no planetary set when they are assembled.
 #[test]
 fn axes_have_to_be_parallel_and_on_one_body() {
     let model = |joints: &str, set: &str| {

@@ -3,7 +3,7 @@
 use crate::common::power::{assert_balance, spatial_pair};
 use crate::common::{read, run};
 
-/// The orientation depends on h, which is uncertain, and the Euler parameters' rates on both; ω is kept.
+/// The orientation depends on h, which is uncertain, and the Euler parameters' rates on both; ω is preserved.
 #[test]
 fn an_angular_velocity_is_kept_where_assembly_finds_the_orientation() {
     let description = read(

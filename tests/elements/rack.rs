@@ -45,7 +45,7 @@ simulation: { duration: 1, step: 2e-3, output_step: 0.1, formulation: absolute }
     let first = curve(fine, "first");
     assert!(largest(curve(fine, "second").iter().zip(first).map(|(second, first)| second + 2.0 * first)) < 1e-10);
     assert!(largest(curve(fine, "rack").iter().zip(first).map(|(s, first)| s + 0.1 * first - 0.1)) < 1e-10);
-    // What pushes the rack, and what turns the wheel with it: −2 (J₂ + r² m) φ̈.
+    // The force that pushes the rack, and the torque that turns the wheel with it: −2 (J₂ + r² m) φ̈.
     let after = |name: &str| curve(fine, name)[1..].iter().copied();
     assert!(largest(after("force").map(|force| force - 3.0 * 0.1 * acceleration)) < 1e-3);
     assert!(largest(after("torque").map(|torque| torque + 2.0 * (0.005 + 0.0025 * 3.0) * acceleration)) < 1e-3);

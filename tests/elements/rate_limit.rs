@@ -35,7 +35,7 @@ fn it_follows_as_scipy_says() {
     }
 }
 
-/// A far goal is reached along a ramp of the rate, which is what the bounds are of.
+/// A far goal is reached along a ramp of the rate; the bounds are those of the rate.
 #[test]
 fn a_step_becomes_a_ramp() {
     let bounds = run(&read(&follower("input: 100, lag: 10 ms", "step: 1e-3")));

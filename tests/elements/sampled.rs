@@ -67,7 +67,7 @@ fn a_held_force_moves_a_mass_by_its_difference_equation() {
     }
 }
 
-/// Of all methods, over the tolerance of the gain.
+/// Bounds of all methods, over the tolerance of the gain.
 #[test]
 fn bounds_are_those_of_the_difference_equation() {
     for simulation in ["step: 2e-3, output_step: 0.05", "scheme: explicit, tolerance: 1e-9, output_step: 0.05"] {
@@ -101,8 +101,7 @@ fn deadbeat_control_brings_a_mass_to_rest_in_two_periods() {
     }
 }
 
-/// A number that refers to itself is the memory of a difference equation; others see the value that was held until
-/// then.
+/// A number that refers to itself is the memory of a difference equation; other numbers see the value held until then.
 #[test]
 fn sampled_numbers_remember() {
     let effects = "
@@ -170,8 +169,7 @@ bounds: {{ taylor: {{ order: 1 }} }}
     }
 }
 
-/// Samples that meet a stop at times of their own take steps of their own, and go on from the instants as all others
-/// do.
+/// Samples that meet a stop at their own times take their own steps; at the instants they change as all others do.
 #[test]
 fn samples_that_step_alone_change_with_the_others() {
     let effects = "

@@ -26,7 +26,7 @@ simulation: {{ duration: 1, step: 1e-3, output_step: 0.01 }}
     assert!(left < 1e-7, "{left:e}");
 }
 
-/// Far from its target a servo gives what its limit allows; a moving target is followed in its rate too.
+/// Far from its target a servo gives its limit; a moving target is followed in its rate too.
 #[test]
 fn a_servo_has_its_limit() {
     let bounds = nominal(&read(
@@ -71,8 +71,8 @@ fn its_power_is_torque_times_rate() {
     assert_balance(&pair("  j: { revolute: [a.P, b.P] }", "  e: { servo: { on: j, target: 0.5, proportional: 40, derivative: 1.2 } }", "  j.angle: 0.3\n  j.angular_velocity: -0.8"), "(40*(0.5 - j.angle) - 1.2*j.angular_velocity)*j.angular_velocity");
 }
 
-/// A target may be a state: an arm that follows a lagging command is what `states` and a torque write out, with a gain
-/// that is uncertain.
+/// A target may be a state: an arm that follows a lagging command equals `states` and a torque that write it out, with
+/// an uncertain gain.
 #[test]
 fn a_target_may_follow_a_state() {
     let text = |drive: &str| {

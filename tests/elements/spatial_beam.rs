@@ -283,8 +283,8 @@ simulation: { duration: 3, step: 1e-3, output_step: 0.1, alpha: -0.02 }
     assert!(largest(curve(&bounds, "bend").iter().copied()) > 1.0, "it bends");
 }
 
-/// The block of `models/spatial_slider_crank_flexible.yaml` is where a rigid rod has it, but for what the bent one is
-/// shorter.
+/// The block of `models/spatial_slider_crank_flexible.yaml` is where a rigid rod has it, up to the shortening of the
+/// bent rod.
 #[test]
 fn a_rod_that_bends_little_moves_its_block_as_a_rigid_one() {
     let bounds = nominal(&common::model("spatial_slider_crank_flexible"));

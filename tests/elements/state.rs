@@ -111,7 +111,7 @@ simulation: {{ duration: 4, output_step: 0.5, {simulation} }}
     }
 }
 
-/// An arm of two links whose elbow a controller drives: the energy is what the drive has put in, which is a state too.
+/// An arm of two links whose elbow a controller drives: the energy equals the work of the drive, which is a state too.
 const ARM: &str = "
 bodies:
   upper: { mass: 3, inertia: 0.06, points: { pin: [-0.25, 0], tip: [0.25, 0] } }

@@ -84,7 +84,7 @@ fn a_cantilever_vibrates_as_the_textbook_says() {
     exact.sort_by(f64::total_cmp);
     for (mode, exact) in exact.into_iter().take(6).enumerate() {
         let found = std::f64::consts::TAU * curve(&bounds, &format!("mode{}.frequency", mode + 1))[0];
-        // Of the modes that are left out; each is an upper bound.
+        // The omitted modes make the difference; each frequency is an upper bound.
         assert!(found > exact * (1.0 - 1e-6) && found < exact * 1.005, "{mode}: {found} {exact}");
     }
 }
@@ -291,7 +291,7 @@ simulation: {{ duration: 0.7, step: 1e-3, output_step: 0.02 }}
     let (found, beam) = (curve(&found, "bent"), curve(&by_beam, "bent"));
     let exact: Vec<f64> = (0..found.len()).map(|row| closed(0.02 * row as f64)).collect();
     let size = largest(exact.iter().copied());
-    // The first rows have what starting from the straight rod sets in motion.
+    // The first rows contain the vibration that the start from the straight rod excites.
     let (found, beam, exact) = (&found[3..], &beam[3..], &exact[3..]);
     assert!(distance(found, exact) < 0.01 * size, "{found:?} {exact:?}");
     assert!(distance(found, beam) < 0.01 * size, "{found:?} {beam:?}");

@@ -93,7 +93,7 @@ fn helical_gears_push_on_their_bearings() {
     }
 }
 
-/// What teeth push on does not change the motion: J₁ + κ² J₂ as without.
+/// The flanks do not change the motion: J₁ + κ² J₂ as without them.
 #[test]
 fn the_motion_does_not_depend_on_the_flanks() {
     let text = |flanks: &str, output: &str| {
@@ -256,7 +256,7 @@ simulation: { duration: 0.01, step: 1e-3, output_step: 0.01 }
     assert_loads(text, &expected, 1e-8);
 }
 
-/// Friction of a bearing grows with what the teeth press on it.
+/// Friction of a bearing grows with the load of the teeth on it.
 #[test]
 fn friction_feels_the_teeth() {
     let text = "

@@ -38,7 +38,7 @@ const GEARS: &str = "
 bodies: { first: { inertia: 0.01, mass: 1 }, second: { inertia: 0.08, mass: 1 } }
 joints: { one: { revolute: [ground, first] }, two: { revolute: [ground, second] }, mesh: { gear: { between: [one, two], ratio: -0.5 } } }";
 
-/// The driven gear gets η of what the other gives: T₁ = α₁ (J₁ + i² J₂/η), and i T₂ = α₁ (J₁/η + i² J₂).
+/// The driven gear gets the share η of the other's power: T₁ = α₁ (J₁ + i² J₂/η), and i T₂ = α₁ (J₁/η + i² J₂).
 #[test]
 fn the_driven_gear_gets_its_share_whichever_drives() {
     let [first, second] = INERTIA;
@@ -48,7 +48,7 @@ fn the_driven_gear_gets_its_share_whichever_drives() {
         let by_first = run(parts, "  drive: { torque: { on: one, value: 2 } }", &rest);
         let acceleration = 2.0 / (first + RATIO * RATIO * second / EFFICIENCY);
         assert_speeds(&by_first, acceleration);
-        // What comes out is what speeds the second gear up.
+        // The output power speeds the second gear up.
         for (&t, &lost) in by_first.times.iter().zip(curve(&by_first, "lost")).skip(1) {
             let out = RATIO * RATIO * second * acceleration * (START + acceleration * t);
             assert!((lost - out * (1.0 / EFFICIENCY - 1.0)).abs() < 1e-6 * lost, "at {t}: {lost} of {out}");
@@ -77,8 +77,8 @@ joints:
     }
 }
 
-/// With the ring held, the sun gives the carrier (1 + ρ η)/(1 + ρ) of its power, since only what rolls against the
-/// carrier is lost; and the carrier gives the sun (1 + ρ)/(1 + ρ/η) (Müller).
+/// With the ring fixed, the sun gives the carrier (1 + ρ η)/(1 + ρ) of its power, since only rolling against the
+/// carrier has losses; and the carrier gives the sun (1 + ρ)/(1 + ρ/η) (Müller).
 #[test]
 fn planets_lose_what_rolls_against_the_carrier() {
     let parts = "

@@ -1,4 +1,4 @@
-//! Trajectories against scipy and closed forms, and what follows them.
+//! Trajectories and the parts that follow them against scipy and closed forms.
 
 use mbint::results::{Bounds, Method};
 
@@ -135,7 +135,7 @@ bounds: { chebyshev: { order: 3 }, taylor: { order: 3 }, scan: { points: 5 } }
     }
 }
 
-/// A table of as many points costs no more steps, and all of them are passed.
+/// A trajectory through a hundred points, and a servo that follows it.
 #[test]
 fn a_servo_follows_a_hundred_points() {
     let points: Vec<String> = (0..100).map(|i| format!("[{}, {} rad]", 0.02 * f64::from(i), (0.1 * f64::from(i)).sin())).collect();
@@ -155,7 +155,7 @@ simulation: {{ duration: 1.9, step: 1e-3, output_step: 0.02 }}
     assert!(distance_from(&bounds.times, curve(&bounds, "angle"), |t| (5.0 * t).sin()) < 0.3);
 }
 
-/// The guide's example: in the end the arm is where it should be, but for what the load takes of the servo's stiffness.
+/// The guide's example: in the end the arm is at its target, but for the sag of the servo under the load.
 #[test]
 fn the_guides_example_runs() {
     let text = include_str!("../../docs/examples/trajectories.yaml");

@@ -5,7 +5,7 @@ use mbint::results::Method;
 
 use crate::common::{band, curve, distance, largest, nominal, output, read, row, run};
 
-/// A cart that is too heavy to be led turns while it goes on along x: the slip angle is −angle.
+/// A cart that is too heavy to be steered turns while it moves along x: the slip angle is −angle.
 fn characteristic(tyre: &str, space: &str) -> mbint::results::Bounds {
     let (inertia, spin, start) = match space {
         "planar" => ("1e9", "angular_velocity", ", cart.angle: -0.3"),
@@ -23,8 +23,9 @@ simulation: {{ duration: 1, step: 1e-2, output_step: 0.02 }}
     )))
 }
 
-/// Of a radial tyre under 4 kN (Bakker, Nyborg & Pacejka 1987, table 1): D = a₁ F² + a₂ F, BCD = a₃ sin(a₄ atan(a₅ F)),
-/// E = a₆ F² + a₇ F + a₈, in kN, N and degrees; a = −22.1, 1011, 1078, 1.82, 0.208, 0, −0.354, 0.707, C = 1.3.
+/// Published values of a radial tyre under 4 kN (Bakker, Nyborg & Pacejka 1987, table 1): D = a₁ F² + a₂ F, BCD = a₃
+/// sin(a₄ atan(a₅ F)), E = a₆ F² + a₇ F + a₈, in kN, N and degrees; a = −22.1, 1011, 1078, 1.82, 0.208, 0, −0.354,
+/// 0.707, C = 1.3.
 #[test]
 fn the_magic_formula_has_its_published_values() {
     let load = 4.0_f64;
@@ -83,7 +84,7 @@ simulation: {{ output_step: 0.1, {simulation} }}
     )
 }
 
-/// SciPy 1.17, `solve_ivp`, DOP853, rtol 1e-12: a slalom beyond what the front tyres can.
+/// SciPy 1.17, `solve_ivp`, DOP853, rtol 1e-12: a slalom beyond the grip of the front tyres.
 #[test]
 fn a_slalom_is_that_of_scipy() {
     let wanted = [
@@ -115,7 +116,7 @@ fn a_car_understeers() {
         25.0 * 1e-3 / (2.7 + gradient * 625.0)
     };
     let off = largest([band.lower[last] / rate(7.6e4) - 1.0, band.upper[last] / rate(8.4e4) - 1.0]);
-    // Of a limit the slope is short by 5e-5.
+    // The slope of a smooth limit is short by 5e-5.
     assert!(off < 3e-4, "{off:e}");
 }
 
@@ -225,7 +226,7 @@ fn a_car_is_braked_by_closed_forms() {
     let rate = (0..20).fold(0.0, |rate, _| -1000.0 / (400.0 + (1.0 + slip(rate)) * 1.5 / 0.09));
     let (speeds, slips) = (curve(&rolling, "v"), curve(&rolling, "slip"));
     let found = (speeds[15] - speeds[5]) / (rolling.times[15] - rolling.times[5]);
-    // Of a limit the slope at no slip is short by 5e-5.
+    // The slope of a smooth limit at no slip is short by 5e-5.
     assert!((found / rate - 1.0).abs() < 1e-4, "{found}, not {rate}");
     assert!((slips[10] / slip(rate) - 1.0).abs() < 2e-4, "{}, not {}", slips[10], slip(rate));
 }

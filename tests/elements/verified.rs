@@ -35,7 +35,7 @@ deformations of millimetres make. Steady turning is felt: [a rotating beam](../g
 /// Elements whose examples have no smooth motion, with the words of the reason; their own tests measure orders.
 const NOT_SMOOTH: [(&str, &str); 1] = [("sampled", "change at instants")];
 
-/// The schemes, and the lowest order that is as theory tells.
+/// The schemes, and the lowest order that agrees with theory.
 const SCHEMES: [(&str, f64); 3] = [("HHT-I3", 1.9), ("extrapolated", 3.8), ("explicit", 4.0)];
 
 /// Largest defect of the balance of power, as a share of the powers, and largest difference of a derivative.
@@ -49,7 +49,7 @@ fn order(found: &Verification, scheme: usize) -> Option<f64> {
     orders.into_iter().reduce(f64::min)
 }
 
-/// What an effect does to the energy along the motion; nothing for joints.
+/// Effect on the energy along the motion; empty for joints.
 fn energy(found: &Verification) -> &'static str {
     let balance = found.formulations[0].balance.as_ref().unwrap();
     match balance.effects.iter().find(|effect| effect.effect == "it").map(|effect| effect.exchange()) {

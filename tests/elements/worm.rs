@@ -12,7 +12,7 @@ const INERTIA: [f64; 2] = [0.002, 0.3];
 const LEAD: f64 = 12.0;
 const PRESSURE: f64 = 20.0;
 
-/// The worm about x through the origin, the wheel about z beside it. Torques act on both; rad/s at the start.
+/// The worm about x through the origin, the wheel about z next to it. Torques act on both; rad/s at the start.
 fn text(lead: f64, start: f64, torques: [f64; 2], effects: &str, outputs: &str, rest: &str) -> String {
     let [worm, wheel] = INERTIA;
     let [on_worm, on_wheel] = torques;
@@ -41,7 +41,7 @@ fn run(text: &str) -> Bounds {
     nominal(&read(text))
 }
 
-/// A right-handed worm that turns about x pushes the teeth beside it along −x. The wheel's axis is at y > 0, so it
+/// A right-handed worm that turns about x pushes the teeth next to it along −x. The wheel's axis is at y > 0, so it
 /// turns about −z.
 #[test]
 fn the_hand_decides_which_way_the_wheel_turns() {
@@ -135,7 +135,7 @@ fn a_worm_of_little_lead_locks() {
     assert!(curve(&free, "worm")[10] > 10.0);
 }
 
-/// What can be read, but has no pitch point.
+/// Models that can be read, but have no pitch point.
 #[test]
 fn axes_have_to_cross_apart() {
     let good = text(LEAD, 0.0, [0.2, 0.0], "", "", "");
