@@ -14,15 +14,15 @@ const PATIENCE: Duration = Duration::from_secs(20);
 /// Rounding of the truth, relative to the size of the coordinates and to the output's own.
 const ROUNDING: f64 = 1e-11;
 
-/// What came of the draws.
+/// Counts over the draws.
 #[derive(Default)]
 pub struct Tally {
     pub draws: usize,
-    /// Draws of which some row is proven.
+    /// Draws with a proven row.
     pub proven: usize,
     pub rows: usize,
     pub known: usize,
-    /// Rows that leave out what occurs.
+    /// Rows that exclude values that occur.
     pub missed: usize,
 }
 
@@ -48,7 +48,7 @@ fn one(number: u64, draw: &Draw, tally: &mut Tally) {
     let begun = Instant::now();
     let late = move || begun.elapsed() > PATIENCE;
     let study = |model: Model| model.study().allow_costly().certified().interrupted(&late).run();
-    // What cannot be proven is refused, which is no miss.
+    // Draws that cannot be proven are refused, which is no miss.
     let Ok(result) = Model::from_yaml_str("draw", &draw.yaml()).and_then(study) else { return };
     let truth = truth::ranges(draw, result.times(), 0);
     let mut is_proven = false;

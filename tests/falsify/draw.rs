@@ -1,4 +1,4 @@
-//! A draw: a model as a file would have it, and what its outputs are in truth.
+//! A draw: a model as a file would have it, and the true ranges of its outputs.
 
 use std::fmt::Write;
 use std::sync::Arc;
@@ -10,9 +10,9 @@ pub struct Parameter {
     pub value: f64,
     /// Half the width of its interval.
     pub half: f64,
-    /// Largest half width, relative to the value; 0 where it is to be certain.
+    /// Largest half width, relative to the value; 0 if it must be certain.
     pub most: f64,
-    /// Whether the model still makes sense where it is 0.
+    /// Whether the model still makes sense if the parameter is 0.
     pub removable: bool,
 }
 
@@ -25,7 +25,7 @@ impl Parameter {
 /// Values of every channel at some times, from values of the parameters.
 pub type Curves = Arc<dyn Fn(&[f64], &[f64]) -> Vec<Vec<f64>> + Send + Sync>;
 
-/// Fewer parameters, independent and with exact intervals, from those of the model: what a motion depends on.
+/// Derives from the model's parameters fewer ones, independent and with exact intervals, on which a motion depends.
 pub type Hidden = Arc<dyn Fn(&[Parameter]) -> Vec<Parameter> + Send + Sync>;
 
 /// A mechanism that does not interact with the others of its model, with parameters of its own.
@@ -40,12 +40,12 @@ pub struct Term {
     pub guess: Vec<String>,
     /// Formulas of the observed quantities.
     pub channels: Vec<String>,
-    /// Of the model's parameters, or of those that are `hidden` behind them.
+    /// Curves of the channels over the model's parameters, or over those that are `hidden` behind them.
     pub curves: Curves,
     pub hidden: Option<Hidden>,
     /// Whether `curves` integrate, so that a single value costs as much as all.
     pub integrated: bool,
-    /// Size of the coordinates, m or rad: what rounding is relative to.
+    /// Size of the coordinates, m or rad: rounding is relative to it.
     pub size: f64,
     pub spatial: bool,
 }
@@ -56,7 +56,7 @@ impl Term {
         self.hidden.as_ref().map_or_else(|| self.parameters.clone(), |hidden| hidden(&self.parameters))
     }
 
-    /// How many parameters of the model are uncertain.
+    /// Number of uncertain parameters of the model.
     fn uncertain(&self) -> usize {
         self.parameters.iter().filter(|parameter| parameter.half > 0.0).count()
     }

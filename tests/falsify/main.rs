@@ -81,12 +81,12 @@ fn describe(draw: &Draw, verdict: &Verdict, number: u64) -> String {
     text + &draw.yaml()
 }
 
-/// What a run of many draws knows so far.
+/// Findings of a run of many draws so far.
 #[derive(Default)]
 struct Findings {
     table: Table,
     record: Option<Record>,
-    /// How often a miss of a family by a method was made simple.
+    /// Number of misses so far of a family by a method.
     shown: BTreeMap<(&'static str, &'static str), usize>,
 }
 
@@ -118,7 +118,7 @@ fn falsify(seed: u64, numbers: Range<u64>, shown: usize) -> Table {
     findings.into_inner().expect("no draw panics with the findings").table
 }
 
-/// One draw: what came of it is noted and, where something is wrong, shown.
+/// Examines one draw: notes its outcome and, if something is wrong, shows it.
 fn attack(draw: &Draw, number: u64, findings: &Mutex<Findings>, shown: usize) {
     let lock = || findings.lock().expect("no draw panics with the findings");
     if lock().record.as_ref().is_some_and(|record| record.has(number)) {
@@ -190,7 +190,7 @@ fn errors_of_a_few_draws_are_honest() {
     assert_eq!(table.failures(), 0);
 }
 
-/// The gate's draws, or as many as the environment asks for: no family is missed more often than known.
+/// The gate's draws, or the number that the environment asks for: no family is missed more often than known.
 #[test]
 #[ignore = "minutes"]
 fn errors_are_honest() {
@@ -232,7 +232,7 @@ fn note(question: &str, draws: usize, wrong: &str, count: usize, most: usize) {
     case.at_most("wrong", count as f64, most as f64).note();
 }
 
-/// Draws of a question, as many as the environment asks for.
+/// Draws of a question, in the number that the environment asks for.
 fn questioned(draws: u64, ask: fn(u64, u64) -> questions::Tally) -> questions::Tally {
     let tally =
         ask(asked("MBINT_FALSIFY_SEED").unwrap_or(known::SEED), asked("MBINT_FALSIFY_QUESTIONS").unwrap_or(draws));
@@ -240,8 +240,8 @@ fn questioned(draws: u64, ask: fn(u64, u64) -> questions::Tally) -> questions::T
     tally
 }
 
-/// Intervals of 95 % miss one in twenty: here at most as many as chance allows in one of a thousand runs, or as are
-/// known.
+/// Intervals of 95 % miss one in twenty: here at most the number that chance exceeds in one of a thousand runs, or the
+/// known number.
 #[test]
 #[ignore = "half a minute"]
 fn shares_that_fail_are_honest() {

@@ -107,7 +107,7 @@ fn share(random: &mut Random) -> Share {
         }
     };
     let (bodies, initial) = (bodies.join(", "), initial.join(", "));
-    // Of more parameters a full grid is refused, though each body has but one.
+    // With more parameters a full grid is refused, though each body has but one.
     let bounds = if count <= 8 { "chebyshev: { order: 4 }" } else { "tolerance: 1e-4" };
     let yaml = format!(
         "model: share
@@ -155,7 +155,7 @@ struct Allocated {
     most: f64,
 }
 
-/// How many times the model's tolerances are looked at.
+/// Widest tolerances of the search, as multiples of the model's.
 const WIDEST: f64 = 3.0;
 
 /// The largest and the smallest value for |d| ≤ t.

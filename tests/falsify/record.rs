@@ -1,5 +1,5 @@
-//! Scores of draws in a file, as they come: a run that ends early keeps them and goes on where it ended, and the files
-//! of two runs, of different draws, can be put together.
+//! Scores of draws in a file, as they come: a run that ends early keeps them and continues where it ended, and the
+//! files of two runs, of different draws, can be put together.
 
 use std::collections::BTreeSet;
 use std::fs::{File, OpenOptions};

@@ -12,11 +12,11 @@ pub struct Drawn {
     pub yaml: String,
     pub output: &'static str,
     pub truth: Box<dyn Fn(f64) -> Range>,
-    /// Size of what counts as rounding, and as error of the truth.
+    /// Allowance for rounding, and for the error of the truth.
     pub rounding: f64,
 }
 
-/// What came of the draws.
+/// Counts over the draws.
 #[derive(Default)]
 pub struct Tally {
     pub draws: usize,
@@ -24,7 +24,8 @@ pub struct Tally {
     pub flagged: usize,
     /// Rows without a flag that the truth contradicts.
     pub missed: usize,
-    /// Sums of widths, of what bands without a flag leave out of them, and of their errors.
+    /// Sums over the rows without a flag: of true widths, of the parts of these outside of the bands, and of stated
+    /// errors.
     width: f64,
     short: f64,
     stated: f64,

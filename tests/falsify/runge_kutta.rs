@@ -91,7 +91,7 @@ const RESULT: [f64; 12] = [
     0.04471061572777259,
 ];
 
-/// What the result is off from one of order 5.
+/// Weights of the difference between the result and one of order 5.
 const FIFTH: [f64; 12] = [
     0.01312004499419488,
     0.0,
@@ -179,7 +179,7 @@ fn attempt<const N: usize>(
     std::array::from_fn(|i| y[i] + step * rates[i])
 }
 
-/// y' = f(t, y, sides): `sides` tells of each switch whether it is positive.
+/// y' = f(t, y, sides): `sides` has for each switch whether it is positive.
 pub trait Sided: Fn(f64, &[f64], &[bool], &mut [f64]) {}
 impl<F: Fn(f64, &[f64], &[bool], &mut [f64])> Sided for F {}
 
@@ -389,7 +389,7 @@ mod tests {
         }
     }
 
-    /// v = 1 but within 1e-3 of x = 0.5, where it is 2: passed in steps of 0.1.
+    /// v = 1, but 2 within 1e-3 of x = 0.5: passed in steps of 0.1.
     #[test]
     fn a_touch_within_a_step_is_located() {
         let f = |_: f64, _: &[f64], sides: &[bool], d: &mut [f64]| d[0] = if sides[0] { 2.0 } else { 1.0 };

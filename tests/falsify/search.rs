@@ -21,7 +21,7 @@ struct Looks {
     nearest: f64,
 }
 
-/// Of closed forms, and of motions, which have two parameters at most.
+/// For closed forms, and for motions, which have two parameters at most.
 const DRAWN: Looks = Looks { drawn: 1500, nearest: FINEST };
 const DRAWN_MOTIONS: Looks = Looks { drawn: 24, nearest: 1e-3 };
 
@@ -32,7 +32,7 @@ const AT_ENDS: f64 = 0.25;
 const STAGES: usize = 60;
 const FINEST: f64 = 1e-8;
 
-/// Places along a parameter where it is looked at whether it matters, but the first.
+/// Points along a parameter, after the first, at which its influence is tested.
 const LOOKS: usize = 16;
 
 /// Samples of a term on a grid over its uncertain parameters.
@@ -47,8 +47,7 @@ struct Grid<'t> {
     values: Vec<Vec<Vec<f64>>>,
 }
 
-/// Of every channel that is needed its range at every time; at each level with about twice as many points along each
-/// parameter.
+/// Range of every needed channel at every time; each level has about twice as many points along each parameter.
 pub fn ranges(term: &Term, times: &[f64], level: u32, needed: &dyn Fn(usize) -> bool) -> Vec<Vec<Range>> {
     let grid = Grid::new(term, times, level);
     let range = |channel, row| {
@@ -59,9 +58,9 @@ pub fn ranges(term: &Term, times: &[f64], level: u32, needed: &dyn Fn(usize) -> 
     (0..term.channels.len()).map(|channel| if needed(channel) { of_channel(channel) } else { Vec::new() }).collect()
 }
 
-/// Whether the curves change with a parameter, in the middle of the others' intervals or at a corner of these: a grid
-/// has the more points the fewer parameters it has. Motions at both its ends may pass what those between them meet, and
-/// only those at one corner may meet it at all.
+/// Whether the curves change with a parameter, in the middle of the others' intervals or at a corner of these: the
+/// fewer parameters a grid has, the more points it has. Motions at both its ends may miss an obstacle that those
+/// between them meet, and only those at one corner may meet it at all.
 fn matters(term: &Term, parameters: &[Parameter], which: usize, times: &[f64]) -> bool {
     let curves = |others: &dyn Fn(usize) -> f64, own: f64| {
         let value = |(i, parameter): (usize, &Parameter)| {
@@ -124,9 +123,9 @@ fn climb(start: &[f64], points: usize, known: f64, f: &dyn Fn(&[f64]) -> f64) ->
     (best, place)
 }
 
-/// The greatest value that is found about a place, a quarter of the box each way and then ever nearer to the best so
-/// far, at points that are drawn at random: on a ridge with a kink, where a contact begins or ends, no direction leads
-/// a climb on, and its end is many cells away. Mostly it is where some parameter is at an end of its interval.
+/// Greatest value found about a point, a quarter of the box each way and then ever nearer to the best so far, at random
+/// points: on a ridge with a kink, where a contact begins or ends, no direction leads a climb on, and its end is many
+/// cells away. Mostly it is where some parameter is at an end of its interval.
 fn narrowed(
     (known, place): &(f64, Vec<f64>),
     points: usize,
@@ -255,7 +254,7 @@ impl<'t> Grid<'t> {
             }
             return found.into_iter().map(|(value, _)| value).fold(f64::NEG_INFINITY, f64::max);
         }
-        // A polynomial overshoots beside kinks: its promise counts as far as the motion there attains it.
+        // A polynomial overshoots near kinks: its promise counts as far as the motion there attains it.
         let moved = |place: &[f64]| sign * (self.term.curves)(&self.at(place), &[0.0, time])[channel][1];
         let mut best = candidates.first().map_or(f64::NEG_INFINITY, |&sample| value(sample));
         for (promised, place) in climbed(&|place, sample| sign * self.interpolated(sample, place, channel, row)) {

@@ -6,7 +6,7 @@ use crate::draw::{Bounds, Combine, Draw, Wrap};
 use crate::random::digits;
 use crate::verdict::{Outcome, Verdict, examine};
 
-/// What shrinking a draw may take.
+/// Time limit for shrinking a draw.
 const PATIENCE: Duration = Duration::from_secs(15);
 
 /// The simplest draw that was found, and its miss.

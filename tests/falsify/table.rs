@@ -1,4 +1,4 @@
-//! What many draws came to: a line for each family and method.
+//! Results of many draws: a line for each family and method.
 
 use std::collections::BTreeMap;
 use std::fmt::{self, Display, Formatter};
@@ -16,7 +16,7 @@ const ALL: &str = "all";
 /// The part of a verdict that goes into the table.
 #[derive(Clone, Debug)]
 pub struct Score {
-    /// Of the method.
+    /// Label of the method.
     pub label: String,
     pub rows: usize,
     pub flagged: usize,
@@ -92,9 +92,9 @@ struct Line {
     misses: usize,
     /// Bands with a row that contradicts its own run.
     contradicted: usize,
-    /// Of every row that is not flagged, stated over true error.
+    /// Stated over true error of every row that is not flagged.
     rows_excess: Vec<f64>,
-    /// Of every band the mean stated over the mean true error.
+    /// Mean stated error over mean true error of every band.
     bands_excess: Vec<f64>,
 }
 
@@ -141,7 +141,7 @@ fn median(values: &[f64]) -> f64 {
 pub struct Table {
     /// By family and method.
     lines: BTreeMap<(String, String), Line>,
-    /// Of every family: draws, refused, panicked, out of time, seconds, the longest.
+    /// Counts by family: draws, refused, panicked, out of time, seconds, the longest.
     draws: BTreeMap<String, [f64; 6]>,
     /// Draws of every family with a band that is missed.
     with_misses: BTreeMap<String, usize>,

@@ -1,5 +1,4 @@
-//! The true range of an output: of every term over its own parameters, and of what a formula makes of independent
-//! ranges.
+//! The true range of an output: of every term over its own parameters, and of a formula of independent ranges.
 
 use crate::draw::{Combine, Draw, Output, Term, Wrap};
 use crate::search;
@@ -18,7 +17,7 @@ impl Range {
     }
 }
 
-/// Of every output the range at every time. A higher level searches more densely.
+/// Range of every output at every time. A higher level searches more densely.
 pub fn ranges(draw: &Draw, times: &[f64], level: u32) -> Vec<Vec<Range>> {
     let needed = |term: usize, channel: usize| draw.outputs.iter().any(|own| own.inputs.contains(&(term, channel)));
     let of_term = |(index, term): (usize, &Term)| {
@@ -56,7 +55,7 @@ fn combined(combine: Combine, a: Range, b: Range) -> Range {
     }
 }
 
-/// What a continuous function makes of an interval.
+/// Range of a continuous function over an interval.
 fn wrapped(wrap: Wrap, range: Range) -> Range {
     match wrap {
         Wrap::Nothing => range,
@@ -84,7 +83,7 @@ fn distance(range: Range) -> Range {
     if range.lower < 0.0 && range.upper > 0.0 { Range { lower: 0.0, ..magnitude } } else { magnitude }
 }
 
-/// What an output is with nominal parameters: only to choose constants near it.
+/// Values of an output with nominal parameters: only to choose constants near them.
 pub fn nominal(draw: &Draw, output: &Output, times: &[f64]) -> Vec<f64> {
     let curves: Vec<Vec<Vec<f64>>> = draw
         .terms

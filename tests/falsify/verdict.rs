@@ -20,7 +20,7 @@ const ROUNDING: f64 = 1e-11;
 /// Rows that are not flagged may be missed in this share of a band.
 const MISSES: f64 = 0.01;
 
-/// What came of a draw.
+/// Outcome of a draw.
 pub enum Outcome {
     /// Every band, and the seconds of the run.
     Judged(Vec<Verdict>, f64),
@@ -48,7 +48,7 @@ pub struct Miss {
     pub found: Range,
     pub stated: f64,
     pub off: f64,
-    /// Whether the band leaves out values that do occur; otherwise it contains values that do not.
+    /// Whether the band excludes values that do occur; otherwise it contains values that do not.
     pub inside: bool,
 }
 
@@ -57,13 +57,14 @@ pub struct Miss {
 pub struct Verdict {
     pub output: usize,
     pub method: Method,
-    /// Of the method, in tables.
+    /// Label of the method in tables.
     pub label: &'static str,
     pub rows: usize,
     pub flagged: usize,
     /// Rows without a flag.
     pub misses: Vec<Miss>,
-    /// Rows without a flag that exclude, by more than the errors, what the run has simulated or bounded otherwise.
+    /// Rows without a flag that exclude, by more than the errors, values that the run has simulated or bounded
+    /// otherwise.
     pub contradicted: usize,
     /// Over the rows without a flag: the sum of stated and of true errors, and each row's ratio.
     pub stated: f64,
@@ -150,7 +151,7 @@ fn judge(draw: &Draw, result: &StudyResult, truth: &[Vec<Range>], unsure: &[Vec<
     verdicts
 }
 
-/// Whether a row without a flag leaves out the nominal motion, or an end of another method's that is not flagged
+/// Whether a row without a flag excludes the nominal motion, or an end of another method's band that is not flagged
 /// either.
 fn is_contradicted(band: Band, all: &[Band], nominal: f64, row: usize, rounding: f64) -> bool {
     let apart = |a: f64, b: f64, error: f64| (a - b).abs() > error + rounding;

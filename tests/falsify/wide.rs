@@ -8,7 +8,7 @@ use crate::random::Random;
 use crate::rows::{self, Drawn, Tally};
 use crate::truth::Range;
 
-/// Share of the values that is rounding, and steps that are kept to 1e-8 of the run.
+/// Share of the values for rounding, and for the error of steps, which is at most 1e-8 of the run.
 const ROUNDING: f64 = 1e-6;
 
 /// A sum over parameters from −1 to 1.

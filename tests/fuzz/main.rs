@@ -29,7 +29,7 @@ static MEMORY: PeakAlloc = PeakAlloc;
 /// More than any input may take.
 const MOST_MEGABYTES: f32 = 1024.0;
 
-/// Tries as many inputs as were asked for, or `few`.
+/// Tries the number of inputs that was asked for, or `few`.
 fn fuzz(name: &str, few: u32, inputs: impl Strategy<Value = String>, target: fn(&str)) {
     let asked = std::env::var("MBINT_FUZZ_INPUTS").ok().map(|number| number.parse().unwrap());
     let config = Config { cases: asked.unwrap_or(few), failure_persistence: None, ..Config::default() };

@@ -101,7 +101,7 @@ const WORDS: [&str; 40] = [
 /// A change of a text. Each number is taken modulo the count of the items that it selects from.
 #[derive(Clone, Debug)]
 pub enum Edit {
-    /// Another word of the same file, of another, or an odd one, instead of one.
+    /// Replaces a word by another one of the same file, of another file, or by an odd one.
     Exchange {
         word: usize,
         by: usize,
@@ -112,7 +112,7 @@ pub enum Edit {
     },
     DeleteWord(usize),
     DeleteLine(usize),
-    /// A line of any file behind one.
+    /// Adds a line of any file behind one.
     AddLine {
         line: usize,
         added: usize,
@@ -144,7 +144,7 @@ pub fn formula() -> impl Strategy<Value = String> {
 
 /// Files to change.
 pub struct Corpus {
-    /// Cut into words and what stands between them.
+    /// Cut into words and the text between them.
     texts: Vec<Vec<String>>,
     lines: Vec<String>,
 }

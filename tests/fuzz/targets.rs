@@ -25,11 +25,11 @@ fn by_itself(text: &str, ending: &str) {
     let path = std::env::temp_dir().join(format!("mbint-fuzz-{}.{ending}", std::process::id()));
     std::fs::write(&path, text).expect("the folder for temporary files can be written");
     report(&model::read(&path, &[]));
-    // What cannot be removed is written over.
+    // A file that cannot be removed is overwritten.
     let _ = std::fs::remove_file(&path);
 }
 
-/// Whether errors are reported where there is no model, and only there.
+/// Asserts that errors are reported if there is no model, and only then.
 fn report(reading: &model::Reading) {
     if !reading.diagnostics.is_empty() {
         assert!(!reading.diagnostics.render(false).is_empty());
@@ -64,7 +64,7 @@ pub fn short_run(text: &str) {
     }
 }
 
-/// The same mechanism with little to do; absent where there is much of it.
+/// The same mechanism with little to do; `None` if it is large.
 fn shortened(mut description: Description) -> Option<Description> {
     let uncertain = description.uncertain().count();
     if description.bodies.len() > 8 || description.joints.len() > 16 || uncertain > 3 {
@@ -73,7 +73,7 @@ fn shortened(mut description: Description) -> Option<Description> {
     let simulation = &mut description.simulation;
     match &mut simulation.stepping {
         Stepping::Fixed(step) => simulation.output_step = *step,
-        // A tolerance near rounding errors asks for as many steps as it pleases.
+        // A tolerance near rounding errors may take any number of steps.
         Stepping::Tolerance(tolerance) => *tolerance = tolerance.max(1e-6),
     }
     simulation.duration = 3.0 * simulation.output_step;

@@ -11,7 +11,7 @@ fn driving(random: &mut Random, scale: &Scale) -> f64 {
     digits((random.scale(2.0, 10.0) * TAU / scale.duration).min(0.2 / scale.step), 4)
 }
 
-/// A spring that hardens, from rest anywhere between two places.
+/// A spring that hardens, from rest anywhere between two positions.
 pub fn hardening(random: &mut Random, scale: &Scale) -> Term {
     let place = scale.place;
     let omega = driving(random, scale);

@@ -7,7 +7,7 @@ use super::{Scale, closed_form, lines, named, parameter, removable};
 use crate::draw::Term;
 use crate::random::Random;
 
-/// A body on a hinge, under a constant torque: angle, place, speed, and the force of the hinge.
+/// A body on a hinge, under a constant torque: angle, position, speed, and the force of the hinge.
 pub fn rotor(random: &mut Random, scale: &Scale) -> Term {
     let place = scale.place;
     let turns = random.scale(0.2, 20.0);

@@ -20,9 +20,9 @@ use crate::draw::{Bounds, Combine, Curves, Draw, Output, Parameter, Stepping, Te
 use crate::random::Random;
 use crate::{runge_kutta, truth};
 
-/// What a mechanism is drawn for.
+/// Index and time scale of a mechanism to be drawn.
 pub struct Scale {
-    /// Its place in the model: names end in it.
+    /// Its index in the model: names end in it.
     pub place: usize,
     /// Step, s; with a tolerance, of the size that it leads to.
     pub step: f64,
@@ -37,13 +37,13 @@ pub struct Family {
     wraps: bool,
     /// Tolerances of the simulation that may be drawn: those that do not take too long.
     tolerances: &'static [f64],
-    /// How often bounds are asked to a tolerance, not of an order.
+    /// Share of draws whose bounds are to a tolerance, not of an order.
     adaptive: f64,
     analysis: &'static str,
 }
 
 impl Family {
-    /// Of those that are drawn for bounds to a tolerance.
+    /// Draws this family mostly for bounds to a tolerance.
     const fn adaptive(self) -> Self {
         Self { adaptive: 0.8, tolerances: &[1e-3, 1e-4], ..self }
     }
@@ -162,7 +162,7 @@ pub fn draw(seed: u64, number: u64, only: Option<&str>) -> Draw {
 }
 
 /// Gives one to four parameters an interval, at least one of every term but those that have none to give; wide ones,
-/// and as many as there are terms, where a surrogate is to find its own degree.
+/// and up to the number of terms, if a surrogate is to find its own degree.
 fn make_uncertain(random: &mut Random, terms: &mut [Term], is_adaptive: bool) {
     let wanted = random.pick(&[1, 1, 1, 1, 1, 2, 2, 2, 3, 4]);
     let wide = is_adaptive || random.chance(0.5);
@@ -238,7 +238,7 @@ fn wrap(random: &mut Random, nominal: &[f64]) -> Wrap {
 /// Methods and orders that take at most a few hundred simulations.
 fn request(random: &mut Random, uncertain: usize, adaptive: f64) -> Bounds {
     if random.chance(adaptive) || uncertain > 4 {
-        // With few parameters a scan beside it now and then, which the band must not exclude.
+        // With few parameters now and then a scan in addition, which the band must not exclude.
         let scan = (adaptive > 0.5 && uncertain <= 2 && random.chance(0.3)).then(|| random.whole(5, 20));
         return Bounds { tolerance: Some(random.pick(&[1e-2, 1e-3, 1e-4])), scan, ..Bounds::default() };
     }
@@ -263,7 +263,7 @@ fn removable(name: &str, index: usize, value: f64, most: f64) -> Parameter {
     Parameter { removable: true, ..parameter(name, index, value, most) }
 }
 
-/// Formulas with `#` for the place.
+/// A formula with the index in place of `#`.
 fn named(formula: &str, index: usize) -> String {
     formula.replace('#', &index.to_string())
 }
@@ -288,7 +288,8 @@ fn closed_form<const N: usize>(at: impl Fn(&[f64], f64) -> [f64; N] + Send + Syn
 /// Error allowed in each step of a reference solution.
 const TOLERANCE: f64 = 1e-12;
 
-/// Curves of what an equation's solution shows. Its steps are no longer than `longest`, s.
+/// Curves of the quantities that `observe` derives from an equation's solution. Its steps are no longer than `longest`,
+/// s.
 fn integrated<const N: usize, const C: usize>(
     longest: f64,
     start: impl Fn(&[f64]) -> [f64; N] + Send + Sync + 'static,

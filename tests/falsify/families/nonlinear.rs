@@ -147,7 +147,7 @@ pub fn post(random: &mut Random, scale: &Scale) -> Term {
     let place = scale.place;
     let gravity = 9.81;
     let [right, up] = [0.5, 0.5].map(|share| digits(share * gravity * scale.duration * random.between(0.4, 1.4), 3));
-    // Where a throw somewhat faster would be at half the time, and so much beside it.
+    // Centre of the post: the position of a somewhat faster throw at half the time, and an offset in height.
     let (t, faster) = (0.5 * scale.duration, random.between(0.95, 1.05));
     let radius = digits(right * t * random.scale(0.01, 0.1), 2);
     let aside = random.between(-1.2, 1.2) * radius;

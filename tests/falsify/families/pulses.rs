@@ -7,8 +7,8 @@ use super::{Scale, closed_form, lines, named, parameter, removable};
 use crate::draw::Term;
 use crate::random::Random;
 
-/// Shape of a pulse: formula of time with centre `T#` and half width `D#`, value at s = (t − T)/D, and where it has
-/// kinks.
+/// Shape of a pulse: formula of time with centre `T#` and half width `D#`, value at s = (t − T)/D, and the kinks of the
+/// value.
 struct Shape {
     formula: &'static str,
     value: fn(f64) -> f64,
@@ -94,7 +94,7 @@ pub fn pulse(random: &mut Random, scale: &Scale) -> Term {
         for ends in shape.kinks.windows(2) {
             let [from, to] = [ends[0], ends[1]].map(|s| (centre + s * half).clamp(0.0, t));
             if to > from {
-                // What a unit of impulse at `at` has become.
+                // State at t by the impulse at `at`, per unit of time.
                 let response = |at: f64| {
                     let force = strength / m * (shape.value)((at - centre) / half);
                     decay(square, delta, 0.0, force, t - at)

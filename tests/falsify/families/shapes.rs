@@ -1,6 +1,6 @@
 //! Oscillators that see many parameters through one number: bumps, ridges, corners, rings and sums. That number's range
 //! over the box is known exactly, whatever the number of parameters. Half of those that change a stiffness have two
-//! forces, which write the number in two ways: a program that looks for one number finds two.
+//! forces, which write the number in two ways: a program that searches for one number finds two.
 
 use std::sync::Arc;
 
@@ -15,7 +15,7 @@ use crate::truth::Range;
 enum Inner {
     Sum,
     SumOfSquares,
-    /// Of (1 + uᵢ)/2.
+    /// Product of (1 + uᵢ)/2.
     Product,
 }
 
@@ -106,7 +106,7 @@ pub fn stack(random: &mut Random, scale: &Scale) -> Term {
     })
 }
 
-/// A place of three digits in a parameter's interval.
+/// A random value of three digits inside a parameter's interval.
 fn inside(random: &mut Random, own: &Parameter) -> f64 {
     digits(own.value + own.half * random.between(-0.95, 0.95), 3)
 }
@@ -198,14 +198,14 @@ impl Shape {
         }
     }
 
-    /// Over a box.
+    /// Range over a box.
     fn range(&self, boxes: &[Parameter]) -> Range {
         let each = boxes.iter().zip(&self.centres).zip(&self.widths).map(|((own, centre), width)| {
             let [a, b] = own.interval().map(|p| (p - centre) / width);
             Range { lower: a.min(b), upper: a.max(b) }
         });
         let sum = |a: Range, b: Range| Range { lower: a.lower + b.lower, upper: a.upper + b.upper };
-        // Of numbers that are not negative.
+        // For numbers that are not negative.
         let product = |a: Range, b: Range| Range { lower: a.lower * b.lower, upper: a.upper * b.upper };
         let inner = match self.inner {
             Inner::Sum => each.reduce(sum),
@@ -234,7 +234,7 @@ mod tests {
     use crate::families::Scale;
     use crate::random::Random;
 
-    /// What lies anywhere in the box is in the hidden range, and its ends are met: by a search of corners, faces and
+    /// The hidden range contains all values in the box, and its ends are attained: by a search of corners, faces and
     /// inner points.
     #[test]
     fn hidden_ranges_are_those_of_the_boxes() {

@@ -24,7 +24,7 @@ pub fn friction(random: &mut Random, scale: &Scale) -> Term {
         // The logarithm of sinh(u).
         let from = u + (0.5 * (1.0 - (-2.0 * u).exp())).ln();
         let to = from - rate * t;
-        // Half a unit of the logarithm a panel where the integrand bends, none where it is straight or 0.
+        // Panels of half a unit of the logarithm where the integrand bends, none where it is straight or 0.
         let (bend, flat) = (to.max(20.0_f64.min(from)), to.max(-40.0));
         let straight = 0.5 * (from - bend) * (from + bend + 2.0 * std::f64::consts::LN_2);
         let bent = if bend > flat {

@@ -8,7 +8,7 @@ use crate::draw::{Curves, Term};
 use crate::random::{Random, digits};
 use crate::runge_kutta;
 
-/// Of how far a state goes in its unit, the error of each step.
+/// Error of each step, relative to the size of the state.
 const TOLERANCE: f64 = 1e-14;
 
 /// Curves of motions that switch, located; steps are at most `longest`, s, long. `units` are sizes of the state: errors
@@ -56,7 +56,7 @@ pub fn ratchet(random: &mut Random, scale: &Scale) -> Term {
     let press = digits(pawl * (0.2 * contact).powi(2) * random.between(0.3, 1.0), 3);
     let damper = digits(pawl * contact * random.between(0.3, 1.5), 2);
     let first = digits(tooth * random.between(0.2, 0.8), 2);
-    // Of the rack, at x: height and slope of each piece.
+    // The rack at x: height and slope of each piece.
     let rack = move |x: f64, height: f64| -> [[f64; 2]; 4] {
         let of = |begin: f64| {
             let (up, down) = (height / (tooth - steep), height / steep);
@@ -65,7 +65,7 @@ pub fn ratchet(random: &mut Random, scale: &Scale) -> Term {
         let [[a, b], [c, d]] = [of(first), of(first + tooth)];
         [a, b, c, d]
     };
-    // The corners of the rack lie at these places.
+    // Positions of the corners of the rack.
     let corners = [first, first + tooth - steep, first + tooth, first + 2.0 * tooth - steep, first + 2.0 * tooth];
     let piece = |beyond: &[bool]| beyond.iter().filter(|own| **own).count().checked_sub(1).filter(|own| *own < 4);
     let curves = located(

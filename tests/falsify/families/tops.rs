@@ -5,7 +5,7 @@ use crate::draw::Term;
 use crate::random::Random;
 use crate::random::digits;
 
-/// A symmetric top that spins about its axis z, tilted at the start; its foot is held.
+/// A symmetric top that spins about its axis z, tilted at the start; its foot is fixed.
 pub fn top(random: &mut Random, scale: &Scale) -> Term {
     let place = scale.place;
     let arm = random.scale(0.05, 0.5);
