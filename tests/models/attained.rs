@@ -116,7 +116,7 @@ fn no_end_that_corners_attain_is_missed_and_witnesses_replay() {
             band.lower[row], band.upper[row]
         );
         assert!(lower >= band.lower[row] - error && upper <= band.upper[row] + error, "row {row}");
-        // Attained, so that the band itself holds it but for what another search finds more.
+        // The ends are attained, so that the band itself contains them but for the finds of another search.
         assert!(lower > band.lower[row] - 5e-3 * width && upper < band.upper[row] + 5e-3 * width, "row {row}");
         for witness in bounds.witnesses.iter().filter(|own| own.row == row) {
             let replayed = last_mass(&witness.parameters)[row];

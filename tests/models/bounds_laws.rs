@@ -23,7 +23,7 @@ fn outside(output: &mbint::results::OutputBounds, inner: Method, outer: Method) 
 #[test]
 #[ignore = "20 s: a scan of every model"]
 fn scans_lie_within_chebyshev_bounds() {
-    // What a scan finds is really taken, but for the time steps' error.
+    // Values of a scan do occur, but for the time steps' error.
     let mut findings = Findings::default();
     for path in model_files() {
         let description = load(&path);
@@ -58,7 +58,7 @@ fn scaled(description: Subject, factor: f64) -> Subject {
 
 #[test]
 fn taylor_and_chebyshev_agree_on_narrow_intervals() {
-    // With intervals of 1e-4 the terms that either leaves out are below rounding and Newton's tolerance (1e-11 of a
+    // With intervals of 1e-4 the terms that either method omits are below rounding and Newton's tolerance (1e-11 of a
     // position; up to 1e-7 of an acceleration or reaction, which is h⁻² times the position's).
     let mut findings = Findings::default();
     for name in ["slider_crank", "double_pendulum", "four_bar", "quick_return", "scotch_yoke", "car_axis"] {

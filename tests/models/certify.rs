@@ -119,7 +119,7 @@ fn what_is_lost_is_unknown_and_said() {
     assert_eq!(certified.lower.len(), bounds.times.len());
     assert!(certified.lower[0] <= -1.3 && certified.upper[0] >= -0.7);
     assert!(certified.lower.last().unwrap().is_nan() && certified.upper.last().unwrap().is_nan());
-    // The scan goes on.
+    // The scan continues.
     assert!(band(x, Method::Scan).lower.iter().all(|value| value.is_finite()));
 }
 

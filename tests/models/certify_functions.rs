@@ -9,7 +9,7 @@ use crate::common::Subject;
 use crate::common::*;
 use crate::runge_kutta::solve;
 
-/// Of closed forms.
+/// Rounding of closed forms.
 const ROUNDING: f64 = 1e-15;
 
 /// A mass of 1 kg that a force in N, a formula, moves along x.

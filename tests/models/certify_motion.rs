@@ -1,5 +1,5 @@
-//! Certified bounds of the true motion: they hold solutions by DOP853 of equations that were derived by hand, are
-//! hardly wider than what these reach, and say where they end.
+//! Certified bounds of the true motion: they contain solutions by DOP853 of equations that were derived by hand, are
+//! hardly wider than the ranges of these, and say where they end.
 
 use mbint::Study;
 use mbint::certificate::{Certificate, check};
@@ -108,7 +108,7 @@ fn solutions_of_the_double_pendulum_are_held() {
         let observed = |of: fn(&[f64]) -> f64| -> Vec<Vec<f64>> {
             solutions.iter().map(|rows| rows.iter().map(|y| of(y)).collect()).collect()
         };
-        // What the samples' spacing leaves out, and what the proof adds.
+        // The excess is due to the spacing of the samples, and to the proof.
         let of_x = excess(&bounds, "x", &observed(|y| y[0].sin() + y[1].sin()));
         held(&format!("double pendulum to 0.6 s, {step}"), solutions.len(), of_x, 1e-5);
         assert!(excess(&bounds, "y", &observed(|y| -y[0].cos() - y[1].cos())) < 1e-5);
@@ -216,8 +216,8 @@ fn solutions_of_the_slider_crank_are_held() {
     assert!(excess(&bounds, "crank_angle", &angles) < 1e-5);
 }
 
-/// All of l1 ± 1 % over 2 s: tens of thousands of samples within, and hardly anything beside them. `MBINT_SAMPLES` is
-/// another number of samples.
+/// All of l1 ± 1 % over 2 s: tens of thousands of samples lie within, and the bounds are hardly wider. `MBINT_SAMPLES`
+/// is another number of samples.
 #[test]
 #[ignore = "a minute: a proof over the whole box, and 20 000 solutions"]
 fn the_whole_slider_crank_is_held() {

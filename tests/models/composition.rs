@@ -34,7 +34,7 @@ fn ten_seconds_of_the_slider_crank_are_bounded_within_a_percent() {
 }
 
 /// Every output of every model can be evaluated from the closure, reactions and energies too: no bound is unknown, and
-/// what a scan finds lies within, up to the surrogate's error (that of the model's own order).
+/// scans lie within, up to the surrogate's error (that of the model's own order).
 #[test]
 #[ignore = "40 s: every model, composed, against scans"]
 fn scans_lie_within_composed_bounds_of_every_model() {

@@ -1,4 +1,4 @@
-//! Controllers of shipped models against what control theory says of them.
+//! Controllers of shipped models against control theory.
 
 use mbint::results::Method;
 
@@ -17,7 +17,8 @@ fn a_known_arm_under_computed_torque_is_two_double_lags() {
     }
 }
 
-/// At rest kp M(q₂) e is what the controller does not know of the weight; for each pair of masses a fixed point.
+/// At rest kp M(q₂) e equals the part of the weight that the controller does not know; for each pair of masses a fixed
+/// point.
 fn at_rest(upper: f64, fore: f64) -> [f64; 2] {
     let (a, b, g, kp) = (0.5, 0.4, 9.81, 100.0);
     let ends = [40_f64.to_radians(), 20_f64.to_radians()];

@@ -102,7 +102,7 @@ fn instructions_grow_in_proportion_to_the_links() {
             (instructions(&simulator), simulator.start.acceleration().len())
         });
         println!("spatial {spatial}: step and accelerations {short:?} of 20 links, {long:?} of 80");
-        // A chain four times as long takes four times as many, and the last links less.
+        // A chain four times as long takes four times the instructions, and the last links fewer.
         assert!(10 * long.0 < 44 * short.0 && 10 * long.1 < 44 * short.1);
         assert!(long.0 < 80 * a_link);
     }
@@ -165,7 +165,7 @@ fn a_branched_tree_moves_as_in_absolute_coordinates() {
     for (a, b) in absolute.iter().zip(&joint) {
         let apart = largest(a.iter().zip(b).map(|(a, b)| a - b)) / largest(a.iter().copied()).max(1e-3);
         println!("{apart:e}");
-        // What the extrapolation of a scheme of order 2 leaves.
+        // The remaining error of the extrapolation of a scheme of order 2.
         assert!(apart < 1e-4, "{apart}");
     }
 }

@@ -103,7 +103,7 @@ simulation: { duration: 0.1, output_step: 0.1 }
 ",
     );
     // The height H = l sin φ takes H cot φ δφ + sin φ δl of half a millimetre: cost (√(3 a) + √(2 b))²/0.5 mm, where a
-    // and b are what the model's tolerances take. The second order, δφ² H/2, is below 2 % of that.
+    // and b are the parts that the model's tolerances take. The second order, δφ² H/2, is below 2 % of that.
     let cost = |degrees: f64| {
         let angle = degrees.to_radians();
         let taken = [0.1 / angle.tan() * 0.2_f64.to_radians(), 0.2e-3 * angle.sin()];
@@ -121,7 +121,7 @@ simulation: { duration: 0.1, output_step: 0.1 }
 fn grades_are_those_of_all_combinations() {
     let grades = "grades: { 0.05 mm: 9, 0.1 mm: 4, 0.2 mm: 3, 0.3 mm: 1 }";
     let found = designed(&STACK.replace("cost: { reciprocal: 4 }", &format!("cost: {{ {grades} }}")));
-    // What a grade leaves of 0.3 mm is shared as √1 : √9.
+    // The rest of 0.3 mm after a grade is shared as √1 : √9.
     let cost = |(t, cost): (f64, f64)| if t < 0.3 { cost + 16.0 / ((0.3 - t) / 0.1) } else { f64::INFINITY };
     let least = [(0.05, 9.0), (0.1, 4.0), (0.2, 3.0), (0.3, 1.0)].map(cost).into_iter().fold(f64::INFINITY, f64::min);
     let best = found.best().unwrap();

@@ -7,7 +7,7 @@ use mbint::results::Method;
 use crate::common::measured::Case;
 use crate::common::{band, curve, distance_from, largest, model, nominal, output, run};
 
-/// Newton's tolerance (1e-11 of the model's size) times what the closed forms' slopes make of it.
+/// Newton's tolerance (1e-11 of the model's size) times the slopes of the closed forms.
 const CLOSED: f64 = 1e-10;
 
 pub(super) type Point = [f64; 2];

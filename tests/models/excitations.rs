@@ -167,7 +167,7 @@ fn parameters_are_worst_within_their_intervals_too() {
     }
 }
 
-/// Of a motion from rest: the peak is the farthest end of all rows, the sum that of the kernel's integral.
+/// Reductions of a motion from rest: the peak is the farthest end of all rows, the sum that of the kernel's integral.
 #[test]
 fn reduced_outputs_and_requirements_are_of_functions() {
     let further = "requirements:

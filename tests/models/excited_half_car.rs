@@ -8,7 +8,7 @@ use crate::common::{read, run_methods};
 /// Steps of 1 ms.
 const STEP: f64 = 1e-3;
 const STEPS: usize = 1000;
-/// Of a row.
+/// Steps of a row.
 const EVERY: usize = 100;
 
 /// Positions and velocities of the body, its angle, the front and the rear wheel.

@@ -153,7 +153,7 @@ bounds: { tolerance: 1e-6, chebyshev: {} }
         let error = (band.lower[row] - lower).abs().max((band.upper[row] - upper).abs());
         assert!(error < 6e-8 && error <= band.error.total[row] + 1e-9, "{t}: {error:e}");
     }
-    // What the model says is not overruled.
+    // A scheme that the model names is not overruled.
     let plain = run_methods(&read(&text.replace("SCHEME", "hht")), None).1;
     assert_eq!(plain.integration, None);
     assert!(

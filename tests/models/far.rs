@@ -112,7 +112,7 @@ fn agrees_with_samples_alone(description: &Subject, width: usize, steps: usize) 
             for (output, value) in one.iter().enumerate() {
                 assert_eq!(observed[output * width + lane].to_bits(), value.to_bits(), "step {step}, lane {lane}");
             }
-            // The last output is what pushes.
+            // The last output is the force that pushes.
             active += usize::from(one[outputs - 1] != 0.0);
         }
         touched += active;

@@ -72,7 +72,7 @@ fn jumps_that_coincide_are_one() {
     assert!(off < 1e-4 * 0.6, "{off:e}");
 }
 
-/// Two square waves, of which some phases make jumps coincide: no step tells these apart, however short.
+/// Two square waves whose jumps coincide for some phases: no step separates these, however short.
 #[test]
 fn jumps_that_may_coincide_are_no_reason_for_ever_shorter_steps() {
     let text = pushed("9*sign(sin(20*t + p)) + 9*sign(sin(20*t + 1.01*p))", 2.0);

@@ -1,11 +1,11 @@
-//! Forces that act in one place only, which a step may jump over. The truth: a body that passes a place of no length
-//! loses the work that is done there, and has that speed from then on.
+//! Forces that act at one position only, which a step may jump over. The truth: a body that passes a position of no
+//! length loses the work that is done there, and has that speed from then on.
 
 use std::f64::consts::PI;
 
 use mbint::Model;
 
-/// What scipy integrates of the table below, from 0 to 2 m, N m.
+/// Integral of the table below by scipy, from 0 to 2 m, N m.
 const WORK: f64 = 1.59;
 
 /// A sledge of 1.6 kg thrown at 2.9 … 3.3 m/s past a brake at 0.83 m.
@@ -35,8 +35,8 @@ fn truth(work: f64, t: f64) -> [f64; 2] {
     positions.fold([f64::INFINITY, f64::NEG_INFINITY], |[lower, upper], x| [lower.min(x), upper.max(x)])
 }
 
-/// How many rows of all bands are not flagged; at these both ends of the true band are within the stated error, and
-/// within `slack`, which is what the brake's own length makes.
+/// Number of rows of all bands that are not flagged; at these both ends of the true band are within the stated error
+/// and `slack`, the effect of the brake's own length.
 fn covered(text: &str, work: f64, slack: f64) -> usize {
     let result = Model::from_yaml_str("thrown", text).unwrap().study().run().unwrap();
     let mut counted = 0;
@@ -85,8 +85,8 @@ fn quotients_and_pairs_of_edges_are_found() {
     }
 }
 
-/// A table whose knots lie within a step: a natural cubic spline of 6000 N at 0.83 m, and of nothing at knots beside
-/// it, ever further apart. Its work is what scipy's `CubicSpline` integrates.
+/// A table whose knots lie within a step: a natural cubic spline of 6000 N at 0.83 m, and of 0 N at knots around it,
+/// ever further apart. Its work is the integral of scipy's `CubicSpline`.
 #[test]
 fn a_table_within_a_step_is_found() {
     let beside: Vec<f64> = (0..26)
@@ -105,7 +105,7 @@ fn a_table_within_a_step_is_found() {
     assert!(counted >= least("tolerance"), "{counted}");
 }
 
-/// Two sledges that travel together past one another's place: a bell of 8 mm in their distance.
+/// Two sledges that travel together and pass one another: a force with a bell of 8 mm in their distance.
 fn convoy(speed: f64, apart: f64) -> String {
     format!(
         "
@@ -124,7 +124,7 @@ bounds: {{ chebyshev: {{ order: 5 }} }}
     )
 }
 
-/// Galilean invariance: what two bodies do to one another is seen, or missed, whatever speed they have in common.
+/// Galilean invariance: the interaction of two bodies is seen, or missed, whatever speed they have in common.
 #[test]
 fn a_common_velocity_hides_nothing_and_flags_nothing() {
     let band = |speed: f64| {

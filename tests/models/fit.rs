@@ -203,7 +203,7 @@ fn draws(numbers: impl Iterator<Item = u64>) -> (usize, Vec<f64>) {
 
 #[test]
 fn the_truth_of_a_slider_crank_is_not_excluded() {
-    // Of 127 the set reaches an end of the model's box, and the polynomials go on beyond it.
+    // In draw 127 the set reaches an end of the model's box, and the polynomials continue beyond it.
     let (excluded, apart) = draws([0, 1, 127].into_iter());
     assert!(excluded == 0 && apart.len() == 3 && apart[2] <= 0.05, "{excluded} {apart:?}");
 }
@@ -245,7 +245,7 @@ fn the_truth_of_a_bouncing_ball_is_not_excluded() {
         let mut random = Random(2007 + 7919 * number);
         let xi = [(); 2].map(|()| between(&mut random, -1.0, 1.0));
         let (stiffness, height) = (1e5 * (1.0 + 0.05 * xi[0]), 1.0 + 0.02 * xi[1]);
-        // Of the last two the times have no common step: values are interpolated, but not beside impacts.
+        // The times of the last two have no common step: values are interpolated, but not near impacts.
         let is_regular = number < 4;
         let late = |random: &mut Random| if is_regular { 0.0 } else { between(random, -0.012, 0.0) };
         let rows = (1..=80).map(|row| 0.025 * f64::from(row));

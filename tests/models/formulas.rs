@@ -28,7 +28,7 @@ fn square_wave(t: f64) -> f64 {
     let whole = (t / (2.0 * half)).floor();
     let rest = t - whole * 2.0 * half;
     let speed = whole * acceleration * half;
-    // Each period adds half² a/2 + half² a to what the speed at its beginning gives.
+    // Each period adds half² a/2 + half² a to the way at the speed of its beginning.
     let begun =
         whole * (1.5 * acceleration * half * half) + (whole * (whole - 1.0) / 2.0) * acceleration * half * 2.0 * half;
     let on = rest.min(half);
@@ -54,7 +54,7 @@ fn steps_see_the_jumps_of_every_function() {
     }
 }
 
-/// A staircase of the position: between two stairs the force is constant, so that energy is kept.
+/// A staircase of the position: between two stairs the force is constant, so that energy is conserved.
 #[test]
 fn a_staircase_of_the_position_keeps_the_energy() {
     for stairs in ["floor(b.x/d + 0.5)", "round(b.x/d)", "ceil(b.x/d - 0.5)"] {
@@ -84,7 +84,7 @@ fn a_smooth_step_and_units_inside_give_their_closed_form() {
     assert!(worst < 1e-6, "{worst:e}");
 }
 
-/// A periodic table goes on with its slope and curvature: here it is the sine that it was made of, but for h⁴.
+/// A periodic table continues with its slope and curvature: here it is the sine that it was made of, but for h⁴.
 #[test]
 fn a_periodic_table_drives_for_ever() {
     let points: Vec<String> = (0..=40)

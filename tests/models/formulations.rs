@@ -26,7 +26,7 @@ fn courses(description: Subject) -> Vec<Vec<f64>> {
 }
 
 /// Differences between the formulations of each output, relative to the largest value of it: at the start, and over all
-/// rows of what two step sizes extrapolate to.
+/// rows of the extrapolation from two step sizes.
 fn differences(description: &Subject, h: f64) -> Vec<(String, f64, f64)> {
     let [absolute, joint] = [Formulation::Absolute, Formulation::Joint].map(|formulation| {
         let course = |h: f64| courses(within(description.clone(), formulation).step(h));

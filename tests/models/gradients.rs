@@ -42,7 +42,7 @@ fn files() -> Vec<PathBuf> {
     model_files().into_iter().chain(examples).collect()
 }
 
-/// What gradients cover of a model.
+/// Comparison of a model's gradients with jets.
 #[derive(Debug, PartialEq)]
 enum Found {
     /// Largest difference from jets.

@@ -4,7 +4,7 @@ use crate::common::model_of;
 
 const GRAVITY: f64 = 9.81;
 
-/// Asserts heights and speeds and their derivatives in all rows but those beside a kink, where the speed has none.
+/// Asserts heights and speeds and their derivatives in all rows but those next to a kink, where the speed has none.
 fn are_those_of(text: &str, parameters: &[f64], of: impl Fn(&[f64], f64) -> [f64; 2], kinks: &[f64]) {
     // Steps err by 1e-10 of the motion at most, and events follow each other: values differ by up to 4e-9 here,
     // derivatives by up to 5e-8.

@@ -76,14 +76,14 @@ fn layers_are_searched_that_are_thinner_than_the_lattice() {
     let (bounds, _) = run_methods(&read(&text), None);
     let row = bounds.times.iter().position(|&t| (t - 6.6).abs() < 1e-9).unwrap();
     let band = band(output(&bounds, "y"), Method::Taylor);
-    // Of less gravity the flight to the ceiling is steeper.
+    // With less gravity the flight to the ceiling is steeper.
     let speeds = (0..200_000).map(|place| 64.4 + 0.3 * f64::from(place) / 2e5);
     let most = speeds.map(|speed| under(9.691, 214.8, speed, 41083.52, 6.6)[0]).fold(f64::NEG_INFINITY, f64::max);
     let (upper, error) = (band.upper[row], band.error.total[row]);
     assert!(!band.error.unresolved[row] && (upper - most).abs() <= error, "{upper} ± {error}, in truth {most}");
 }
 
-/// Three parameters part the box in throws that touch the ceiling and others.
+/// Three parameters divide the box into throws that touch the ceiling and others.
 #[test]
 fn boxes_of_three_parameters_are_divided() {
     let text = throw(
@@ -105,12 +105,12 @@ fn boxes_of_three_parameters_are_divided() {
         })
         .collect();
     let truth = |line: usize, t: f64| range(points.iter().map(|[h, v, k]| thrown(*h, *v, *k, t)[line]));
-    // So much the lattice leaves out where contacts begin and end.
+    // The lattice misses this much where contacts begin and end.
     assert_within(&bounds, "v", Method::Chebyshev, 0.1, |t| truth(1, t));
     assert_within(&bounds, "y", Method::Chebyshev, 0.01, |t| truth(0, t));
 }
 
-/// Nominal throws graze the ceiling by 1e-4 of its height: a sample of which no instant can be solved for is left out.
+/// Nominal throws graze the ceiling by 1e-4 of its height: a sample without a solvable instant is omitted.
 #[test]
 fn a_nominal_throw_may_graze() {
     let text = throw(

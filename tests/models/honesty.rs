@@ -38,7 +38,7 @@ fn honesty(output: &OutputBounds, method: Method, truth: &Truth) -> (f64, f64) {
     (covered as f64 / truth.len() as f64, reported / true_errors)
 }
 
-/// Findings of several settings, and what their stated errors are over the true ones.
+/// Findings of several settings, and ratios of stated to true errors.
 #[derive(Default)]
 struct Settings {
     findings: Findings,
@@ -46,9 +46,9 @@ struct Settings {
 }
 
 impl Settings {
-    /// Whether all are covered, and stated errors not more than ten times as large on average. (One may be: where both
-    /// ends are validation samples, which the band holds, it is far better than the surrogate of a low order is
-    /// elsewhere.)
+    /// Asserts that all are covered, and that stated errors are at most ten times as large on average. (One may be:
+    /// where both ends are validation samples, which the band contains, it is far better than the surrogate of a low
+    /// order is elsewhere.)
     fn are_honest(mut self) {
         let mean = self.ratios.iter().sum::<f64>() / self.ratios.len() as f64;
         println!("{mean:.2} times on average");
@@ -59,7 +59,7 @@ impl Settings {
 
 fn check(settings: &mut Settings, name: &str, description: &Subject, methods: &[Method], outputs: &[(&str, Truth)]) {
     for &method in methods {
-        // Alone: in one run each band holds what the others have simulated, and is better than its error says.
+        // Alone: in one run each band contains the simulations of the others, and is better than its error says.
         let (bounds, _) = run_methods(description, Some(vec![method]));
         for (wanted, truth) in outputs {
             let output = output(&bounds, wanted);

@@ -1,6 +1,6 @@
-//! Whether bounds to a tolerance are honest where samples that are chosen beforehand say little: bumps beside them, one
-//! corner of many, motions that bend over the box; and whether whatever a run has simulated lies within its bands. The
-//! truths are closed forms, or another method's motions over dense grids.
+//! Honesty of bounds to a tolerance where samples that are chosen beforehand say little: bumps between them, one corner
+//! of many, motions that bend over the box; and bands contain whatever a run has simulated. The truths are closed
+//! forms, or another method's motions over dense grids.
 
 use mbint::results::{Bounds, Method};
 

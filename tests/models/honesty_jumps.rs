@@ -48,7 +48,7 @@ fn ends_at_jumps_are_found() {
     assert_eq!(counted, [bounds.times.len(); 3], "nothing of these is flagged");
     // An angle that is a whole number at an end of the box is on either side of a jump.
     assert!(assert_honest(&bounds, "count", Method::Chebyshev, count) > 0);
-    // The brink itself, not a place beside it.
+    // The brink itself, not a point next to it.
     let rest = band(output(&bounds, "rest"), Method::Chebyshev);
     let full: Vec<usize> = (0..bounds.times.len()).filter(|&row| rest.upper[row] - rest.lower[row] > 6.0).collect();
     assert!(full.len() > 10);

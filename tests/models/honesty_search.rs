@@ -44,7 +44,7 @@ fn honesty(bounds: &Bounds, name: &str, method: Method, truth: impl Fn(f64) -> (
 #[track_caller]
 pub fn assert_honest(bounds: &Bounds, name: &str, method: Method, truth: impl Fn(f64) -> (f64, f64)) -> usize {
     let (counted, covered, _) = honesty(bounds, name, method, truth);
-    // Of no row that is not flagged nothing is said.
+    // Nothing is asserted if all rows are flagged.
     assert!(counted == 0 || covered >= 0.99, "{name}.{}: {covered} of {counted} rows", method.name());
     counted
 }
@@ -157,7 +157,7 @@ bounds: { chebyshev: { order: ORDER }, scan: { points: 24 } }
     }
 }
 
-/// Pendulums of which some go over the top and some do not: samples beside each other end up turns apart.
+/// Pendulums of which some go over the top and some do not: adjacent samples end up turns apart.
 #[test]
 fn a_scan_across_a_separatrix_is_covered_or_flagged() {
     let text = "

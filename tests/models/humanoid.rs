@@ -1,5 +1,5 @@
-//! `humanoid.yaml` against its equations in minimal coordinates, written by hand: the hips' place and nine absolute
-//! angles. A point of a segment is p + Σ aⱼ u(θⱼ) + b n(θ), with u along and n across a segment.
+//! `humanoid.yaml` against its equations in minimal coordinates, written by hand: the position of the hips and nine
+//! absolute angles. A point of a segment is p + Σ aⱼ u(θⱼ) + b n(θ), with u along and n across a segment.
 
 use crate::common::dormand_prince::dormand_prince;
 use crate::common::{curve, distance, model, nominal, order};
@@ -14,12 +14,12 @@ const GYRATION: [f64; 5] = [0.503, 0.323, 0.416, 0.322, 0.468];
 
 type Unknowns = [f64; UNKNOWNS];
 
-/// Kind of a segment: a place in the tables.
+/// Kind of a segment: an index into the tables.
 fn kind(segment: usize) -> usize {
     if segment == 0 { 0 } else { (segment - 1) % 4 + 1 }
 }
 
-/// How far one goes along each segment from the hips to a point of one, at a share of its length.
+/// Distances along each segment from the hips to a point of one, at a share of its length.
 fn path(segment: usize, share: f64) -> [f64; SEGMENTS] {
     let mut along = [0.0; SEGMENTS];
     along[segment] = share * LENGTHS[kind(segment)];
@@ -32,7 +32,7 @@ fn path(segment: usize, share: f64) -> [f64; SEGMENTS] {
     along
 }
 
-/// Velocity of a point for each rate, along x and y, and what its acceleration has beside the accelerations of these.
+/// Velocity of a point for each rate, along x and y, and the part of its acceleration without the rates' derivatives.
 struct Point {
     rows: [Unknowns; 2],
     rest: [f64; 2],

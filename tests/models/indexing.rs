@@ -86,7 +86,7 @@ fn a_geneva_wheel_with_slots_that_end_turns_by_a_quarter() {
                 let distance = (CENTRES - a * cos).hypot(a * sin);
                 (-FRAC_PI_4 - (a * sin).atan2(CENTRES - a * cos), 1.3e-4 / distance)
             }
-            // One horn is beside the disc, the other one is where it begins.
+            // One horn is next to the disc, the other one is where it begins.
             45.0..100.0 => (-FRAC_PI_2, 0.01),
             _ => (-FRAC_PI_2, 0.2 / 70.0),
         };

@@ -136,7 +136,8 @@ bounds: { chebyshev: { order: 5 } }
     }
 }
 
-/// What already is so in one part, and never so in another, has no bounds: the instant has a kink.
+/// A condition that holds from the start in one part of the box, and never in another, has no bounds: the instant has a
+/// kink.
 #[test]
 fn an_instant_with_a_kink_stays_flagged() {
     let found = throw(5.0, 0.5, "{ when: ball.y < 0.5 m, from: 0.82 s }");

@@ -1,4 +1,4 @@
-//! What no step may lose: the loops stay closed, and energy stays where nothing takes it.
+//! Invariants that no step may lose: the loops stay closed, and energy is conserved unless something takes it.
 
 use mbint::Formulation;
 

@@ -1,5 +1,5 @@
 //! The published benchmarks, each against a solution that another method found: second order in the step, errors in
-//! proportion to the tolerance, and what each benchmark asks for besides.
+//! proportion to the tolerance, and the further demands of each benchmark.
 
 use std::fmt::Write as _;
 
@@ -23,7 +23,7 @@ struct Benchmark {
 struct Solution {
     file: &'static str,
     source: &'static str,
-    /// s; the last row's time, and how far apart rows are that are looked at.
+    /// s; time of the last row, and interval between the rows that are compared.
     duration: f64,
     every: f64,
 }
@@ -251,7 +251,8 @@ fn andrews_mechanism_is_exact_to_a_hundred_millionth_by_tolerance() {
     assert!(errors[0] < 1e-8, "{errors:?}");
 }
 
-/// What the benchmarks ask of the energy: 5e-5 J of the pendulum, 0.1 J of the loops, 1e-3 J of Bricard's mechanism.
+/// Limits of the benchmarks on the energy: 5e-5 J for the pendulum, 0.1 J for the loops, 1e-3 J for Bricard's
+/// mechanism.
 #[test]
 #[ignore = "10 s: long motions"]
 fn energy_is_kept_as_the_benchmarks_ask() {

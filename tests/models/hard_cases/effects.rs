@@ -47,8 +47,8 @@ fn settles_at_order_two(errors: &[f64]) {
     assert!(late[2] < 0.1 * errors[0], "{errors:?}");
 }
 
-/// Bounds by Chebyshev polynomials and by a scan hold what some samples of the truth do, within the errors that they
-/// report. `allowed` is how far ends may be off, relative to the widest range.
+/// Bounds by Chebyshev polynomials and by a scan contain some samples of the truth, within the errors that they report.
+/// `allowed` is the largest error of ends, relative to the widest range.
 fn bounds_hold(description: Subject, name: &str, truths: &[Vec<f64>], allowed: f64) {
     let description = description.asking(|study| study.chebyshev(12).scan(41));
     let bounds = run(&description);
@@ -133,7 +133,7 @@ fn a_bouncing_ball_has_the_energies_of_its_restitutions() {
         time += 2.0 * rise;
     }
     assert_eq!(expected.len(), 4);
-    // What the weight does while they touch: δ of the height.
+    // Work of the weight during the contact: δ of the height.
     let exact = bounces(1e9, 0.8, 1e-3, 3001);
     let rows: Vec<usize> = expected.iter().map(|&(time, _)| (time * 1e3).round() as usize).collect();
     let exact: Vec<f64> = rows.iter().map(|&row| 0.5 * exact[row][1].powi(2) + G * exact[row][0]).collect();
@@ -293,7 +293,7 @@ simulation: {{ {run} }}
     ))
 }
 
-/// The slider's place: the rod's angle and the slider's place are all that is free.
+/// Position of the slider: the rod's angle and this position are the only freedoms.
 fn loose_slider(clearance: f64, output_step: f64, rows: usize) -> Vec<f64> {
     let (mass, inertia, sliding) = (0.21, 2.5e-4, 0.14);
     let about_pin = inertia + mass * 0.25 * ROD * ROD;
@@ -355,7 +355,7 @@ fn bounds_of_a_slider_crank_with_clearance_hold() {
 
 // --- A wheel that its bearing brakes, and a block that a slope does not move.
 
-/// What counts as rest, rad/s.
+/// Speed below which the wheel counts as at rest, rad/s.
 const REST: f64 = 1e-3;
 
 fn wheel(run: &str) -> Subject {
@@ -437,9 +437,9 @@ simulation: {{ duration: 2, step: 1e-3, output_step: 0.02 }}
     assert!(off < 1e-9, "{off:e}");
 }
 
-// --- What order events leave.
+// --- Order of errors with events.
 
-/// Mean errors over many places of an event within a step, for steps that are halved.
+/// Mean errors over many positions of an event within a step, for steps that are halved.
 fn mean_errors(case: impl Fn(f64) -> (Subject, f64), steps: &[f64]) -> Vec<f64> {
     let phases = 30;
     let mean = |&h: &f64| {

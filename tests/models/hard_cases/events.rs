@@ -83,7 +83,7 @@ simulation: {{ duration: 1, step: 1e-3, output_step: 0.02 }}
     assert!(errors[2] < 1e-4 && errors[2] < errors[0] / 20.0, "{errors:?}");
 }
 
-/// A block on a spring, with dry friction: each half of a swing loses 2 μmg/k, and so turns at known places.
+/// A block on a spring, with dry friction: each half of a swing loses 2 μmg/k, and so turns at known positions.
 #[test]
 fn friction_reverses_at_every_turn() {
     let text = "bodies: { block: { mass: 1, coordinates: [x] } }

@@ -72,7 +72,7 @@ simulation: {{ duration: 3, step: 1e-3, output_step: 0.01 }}
 
 #[test]
 fn a_change_point_is_passed_on_the_branch_of_the_motion() {
-    // The branch with the rod as the crank's mirror image is smooth; energy is kept to second order.
+    // The branch with the rod as the crank's mirror image is smooth; energy is conserved to second order.
     let description = read(&change_point(0.5));
     let runs = [1e-3, 5e-4].map(|h| run_methods(&description.clone().step(h), Some(Vec::new())));
     let drifts = runs.each_ref().map(|(bounds, _)| {

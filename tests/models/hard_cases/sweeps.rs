@@ -31,8 +31,8 @@ fn small_steps(h: f64, steps: f64) -> (f64, [f64; 2]) {
     (duration, [largest(errors[..2].iter().copied()), largest(errors[2..].iter().copied())])
 }
 
-/// The scheme's own error of second order, then what rounding leaves: velocities are differences of positions, so they
-/// have a rounding error of ε/h.
+/// The scheme's own error of second order, then rounding: velocities are differences of positions, so they have a
+/// rounding error of ε/h.
 fn check_small_steps(count: f64, smallest: i32) {
     for exponent in 2..=smallest {
         let h = 10.0_f64.powi(-exponent);
