@@ -226,7 +226,7 @@ fn instructions(description: &Subject) -> usize {
     counts.step + counts.factor + counts.first_correction + counts.advance
 }
 
-/// Link by link: with its multiplier, each takes as many instructions as the last.
+/// Link by link: with its multiplier, each takes the same number of instructions.
 #[test]
 fn chains_on_balls_are_eliminated_link_by_link() {
     let [ten, twenty] = [10, 20].map(|links| instructions(&chain(links)) as f64);
@@ -311,7 +311,7 @@ simulation: {{ duration: 1, step: 1e-2, output_step: 0.1 }}
         for (name, exact) in exact {
             let off = distance_from(&bounds.times, curve(&bounds, name), exact);
             println!("{between} {name} {off:.1e}");
-            // Of the second body's side the torque is about a point that the puck leaves.
+            // On the second body's side the torque is about a point that the puck leaves.
             let is_about_own_point = name != "tilt" || sign > 0.0;
             assert!(off < 1e-8 || !is_about_own_point, "{between}: {name} is off by {off:e}");
         }
@@ -351,7 +351,7 @@ fn a_coupler_hangs_on_one_of_its_joints() {
     assert!(!cut.contains(','), "{cut}");
 }
 
-/// One turn about the vertical and back to the same place: Euler parameters pass through all signs.
+/// Turns about the vertical, back to the same orientation: Euler parameters pass through all signs.
 #[test]
 fn a_ball_turns_any_number_of_times() {
     let text = "

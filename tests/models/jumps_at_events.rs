@@ -4,7 +4,7 @@ use mbint::results::Method;
 
 use crate::common::{band, largest, output, ran, study_of};
 
-/// A mass on a track, whose force is constant between two places; its energy is known at each.
+/// A mass on a track, whose force is constant between two positions; its energy is known at each.
 fn track(speed: &str, request: &str) -> String {
     let force = "if(b.x > 0.9, 0.5, if(b.x > 0.4, -0.7, 0.3))";
     let work = "if(b.x > 0.9, -0.23 + 0.5*(b.x - 0.9), if(b.x > 0.4, 0.12 - 0.7*(b.x - 0.4), 0.3*b.x))";
@@ -29,7 +29,7 @@ fn no_energy_is_lost_where_a_force_jumps() {
     assert!(lost < 1e-13, "{lost:e}");
 }
 
-/// Constant forces are integrated exactly: all that steps err by is rounding, in rows beside the events, too.
+/// Constant forces are integrated exactly: steps err by rounding alone, also in rows next to the events.
 #[test]
 fn errors_of_steps_are_rounding_where_a_force_jumps() {
     let (bounds, summary) = ran(study_of(&track("1 ± 5%", "bounds: { chebyshev: { order: 6 } }")));

@@ -1,4 +1,4 @@
-//! Surrogates that are kept after a run: their values anywhere in the box, against simulations there.
+//! Surrogates stored after a run: their values anywhere in the box, against simulations there.
 
 use mbint::inner::study::{self, Kept, Options};
 

@@ -5,7 +5,7 @@ use crate::common::measured::Case;
 use crate::common::{curve, distance_from, largest, model, nominal, order, read, reference, row};
 use std::f64::consts::{PI, TAU};
 
-/// Newton's tolerance (1e-11 of the model's size) times what the closed forms' slopes make of it.
+/// Newton's tolerance (1e-11 of the model's size) times the slopes of the closed forms.
 const CLOSED: f64 = 1e-10;
 
 /// Rocker angle of the four-bar `four_bar.yaml`, from Freudenstein's equation, in the branch above the base.

@@ -106,7 +106,7 @@ bounds: {{ scan: {{ points: 21 }}, chebyshev: {{ order: 4 }} }}
     )
 }
 
-/// What the formulations differ by at the end of Richardson's extrapolation.
+/// Asserts that the formulations agree at the end of Richardson's extrapolation, to `allowed` of the largest value.
 #[track_caller]
 fn alike(text: &str, names: &[&str], h: f64, allowed: f64) {
     let limits = [Formulation::Absolute, Formulation::Joint].map(|formulation| {
@@ -132,7 +132,7 @@ fn a_kite_and_linkages_near_a_change_point_move_alike() {
 }
 
 /// A box of lengths with the parallelogram in it: on its two sides linkages move differently. Joint coordinates bound
-/// what absolute ones bound, and say so where they cannot.
+/// the same motions as absolute ones, and report it where they cannot.
 #[test]
 fn a_box_across_a_change_point_is_bounded_as_in_absolute_coordinates() {
     let text = four_bar([1.0, 1.0, 1.0, 1.0], [1.2, 0.0, 1.2], 1.0);

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use crate::common::{curve, distance_from, largest, model, nominal, order};
 
-/// Newton's tolerance (1e-11 of the model's size) times what the closed forms' slopes make of it.
+/// Newton's tolerance (1e-11 of the model's size) times the slopes of the closed forms.
 const CLOSED: f64 = 1e-9;
 
 /// A move from rest to rest by the polynomial of degree five.

@@ -1,9 +1,9 @@
-//! The models of `models/`, and smaller mechanisms, compared with what mbint did not compute: closed forms, invariants,
-//! published problems, hard cases, and the laws that mechanics and bounds obey. What tests a single element is in
-//! `tests/elements`.
+//! The models of `models/`, and smaller mechanisms, compared with results that mbint did not compute: closed forms,
+//! invariants, published problems, hard cases, and the laws that mechanics and bounds obey. Tests of a single element
+//! are in `tests/elements`.
 //!
 //! One binary for all of them, so that the library is linked once. Every tolerance says where it comes from: rounding
-//! and Newton's tolerance (1e-11 of a position), the scheme's order (2), or a measurement that is written beside it.
+//! and Newton's tolerance (1e-11 of a position), the scheme's order (2), or a measurement that is written next to it.
 
 #![allow(clippy::disallowed_methods, reason = "tests compare with the standard library's functions")]
 

@@ -91,12 +91,13 @@ simulation: {{ duration: 1, step: 1e-3, output_step: 0.01 }}
         let error = apart(name, 1e-3);
         assert!(error < 1e-9, "{name} is off by {error:e}");
     }
-    // Reactions are of order two each, and what both miss differs: 8e-6 of 41 N where the rocker swings through.
+    // Reactions are of order two each, with different errors: 8e-6 of 41 N where the rocker swings through.
     let [coarse, fine] = [1e-3, 5e-4].map(|h| apart("push", h));
     assert!(coarse < 1e-3 && (order(coarse, fine) - 2.0).abs() < 0.1, "the push is off by {coarse:e}, {fine:e} N");
 }
 
-/// An arm without mass on a hinge, placed by springs: joint coordinates know its balance, absolute ones say what helps.
+/// An arm without mass on a hinge, placed by springs: joint coordinates find its balance, absolute ones report the
+/// reason.
 #[test]
 fn an_arm_on_a_hinge_is_placed_by_springs() {
     let text = |formulation: &str| {

@@ -1,5 +1,5 @@
-//! What bounds must not depend on, by any method: where the origin is, the order of the parameters, the units, and
-//! which way round the mechanism is built.
+//! Invariance of bounds, by any method: under a shift of the origin, the order of the parameters, the units, and the
+//! way round in which the mechanism is built.
 
 use mbint::results::{Bounds, Method};
 

@@ -267,7 +267,8 @@ initial: { plate.x: 0, plate.y: 0, plate.z: 0 }
 outputs: { z: plate.z }
 ";
     let bounds = nominal(&read(text));
-    // scipy.linalg.eigvals of [0 I; −M⁻¹K −M⁻¹C], assembled by hand from the directions and the places of the springs.
+    // scipy.linalg.eigvals of [0 I; −M⁻¹K −M⁻¹C], assembled by hand from the directions and the positions of the
+    // springs.
     let modes = [
         (0.116_832_375_287, 0.002_263_414_410_92),
         (1.189_384_085_99, 0.016_671_339_379_4),

@@ -191,7 +191,7 @@ outputs: {{ x: m.x, felt: felt, again: again }}
     damping.sort_by(f64::total_cmp);
     let [low, high] = [1.0_f64, 3.0].map(|part| (part * std::f64::consts::PI / 8.0).sin());
     damping.iter().zip([low, low, high, high]).for_each(|(found, wanted)| close(*found, wanted, 1e-10));
-    // Of the vibration of 5 rad/s it lets through what its transfer function says.
+    // The filter passes the vibration of 5 rad/s by its transfer function.
     let s = Complex::new(-0.5, 24.75_f64.sqrt()) / w;
     let passed = 1.0 / b.iter().fold(Complex::new(0.0, 0.0), |sum, b| sum * s + b);
     assert!(passed.norm() > 1.0, "the vibration decays, so that what follows it late is larger");

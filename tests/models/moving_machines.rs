@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use crate::common::dormand_prince::dormand_prince;
 use crate::common::{curve, distance, distance_from, model, nominal, order};
 
-/// Newton's tolerance (1e-11 of the model's size) times what the closed forms' slopes make of it.
+/// Newton's tolerance (1e-11 of the model's size) times the slopes of the closed forms.
 const CLOSED: f64 = 1e-9;
 
 /// Lift of the cam of `cam.yaml` by its angle, and the lift's first two derivatives: 3-4-5 polynomials.
@@ -133,7 +133,7 @@ fn the_platform_on_six_legs_rises_and_turns() {
 #[test]
 fn the_platforms_legs_carry_and_turn_it() {
     let (mass, inertia, lever) = (12.0, 0.7, 0.6 * 0.35);
-    // Three legs of a kind push alike: what lifts, and what turns.
+    // Three legs of a kind push alike: lift and twist.
     let forces = |t: f64| {
         let ([height, turn], lengths) = (platform(t), legs(t).map(f64::sqrt));
         let lift = mass * (9.81 + second(|t| platform(t)[0], t)) / 3.0;
@@ -157,7 +157,7 @@ fn the_platforms_legs_carry_and_turn_it() {
     assert!(errors[1] < 2e-6 && (order(errors[0], errors[1]) - 2.0).abs() < 0.3, "{errors:?}");
 }
 
-/// What Pinocchio 4.1.0's articulated-body algorithm and SciPy's DOP853 (tolerances 1e-11 and 1e-13) give for
+/// Results of Pinocchio 4.1.0's articulated-body algorithm and SciPy's DOP853 (tolerances 1e-11 and 1e-13) for
 /// `arm.urdf` with the payload, the controllers and friction v/√(v² + 0.05²): time, tool's x and z, shoulder, upper
 /// arm, forearm, second wrist.
 const ARM: [[f64; 7]; 5] = [

@@ -1,5 +1,5 @@
 //! Test models of other programs, written in this project's words: cases and reference values are the rows of
-//! `tests/peers/*.csv`, models stand in the folders beside them.
+//! `tests/peers/*.csv`, models stand in the folders next to them.
 //!
 //! Exudyn's values are those of `tests/peers/in_exudyn.py`, which makes the mechanisms of its mini examples in Exudyn;
 //! Chrono's are the closed forms that its unit tests state, by `tests/peers/closed_forms.py`.
@@ -9,7 +9,7 @@ use std::path::Path;
 use crate::common::measured::Case;
 use crate::common::{curve, largest, load, nominal};
 
-/// Runs all cases of a table; what goes wrong in any of them.
+/// Runs all cases of a table, fails with every deviation, and returns their number.
 fn collection(peer: &str, program: &str) -> usize {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/peers");
     let mut table = csv::Reader::from_path(folder.join(format!("{peer}.csv"))).unwrap();

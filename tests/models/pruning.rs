@@ -297,7 +297,7 @@ fn welded_bodies_are_one_where_nothing_asks_for_the_weld() {
         for (name, off) in difference(&joint("1e-3", false), &joint("1e-3", true)) {
             assert!(off < 1e-9, "{name} is off by {off} of its size");
         }
-        // In absolute coordinates the discretisation differs, by what falls with the square of the step.
+        // In absolute coordinates the discretisation differs, with the square of the step.
         let absolute = |step: &str, weld: bool| run(&model("absolute", step, weld)).0;
         let coarse = difference(&absolute("1e-3", false), &absolute("1e-3", true));
         let fine = difference(&absolute("5e-4", false), &absolute("5e-4", true));
@@ -438,7 +438,7 @@ fn every_decision_is_explained_with_what_it_saves() {
     assert_eq!(merged.saves.unwrap().instructions, count(&kept) - merged_count);
 }
 
-/// A crank that is driven until coupler and rocker are stretched, from which on nothing can go on.
+/// A crank that is driven until coupler and rocker are stretched, where the motion ends.
 fn locking(outputs: &str) -> Sections {
     Sections {
         parameters: "  omega: { value: 1, unit: rad/s, tolerance: 1% }\n".to_owned(),
@@ -480,7 +480,7 @@ fn an_island_that_stops_leaves_the_others_alone() {
     assert!(stopped.nominal[10].is_finite() && stopped.nominal[30].is_nan());
     assert!(stopped.bands[0].lower[30].is_nan() && stopped.bands[0].error.unresolved[30]);
 
-    // What no output asks for may lock.
+    // A part that no output needs may lock.
     let mut unasked = locking("").with(&free);
     unasked.initial += "  crank.angle: 0.5\n";
     let (bounds, summary) = run(&unasked.model());
@@ -509,7 +509,7 @@ fn with_parts_of_the_box_left_out_there_is_one_island() {
     let (bounds, summary) = model.asking(Study::skip_infeasible).finished(None);
     assert!(summary.subsystems.is_empty() && !summary.pieces.is_empty());
     assert!(summary.pieces.iter().all(|piece| piece.lower.len() == 2), "{:?}", summary.pieces);
-    // Of 0.25 m, 0.05 are too short.
+    // 0.05 m of the 0.25 m are too short.
     assert!((0.6..0.85).contains(&bounds.covered[0]), "{:?}", bounds.covered);
 }
 

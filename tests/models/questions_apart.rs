@@ -56,7 +56,7 @@ fn simulations(summary: &Summary) -> usize {
     summary.methods.iter().map(|method| method.simulations).sum()
 }
 
-/// Every number of reduced outputs and requirements; names of parameters are left out.
+/// Every number of reduced outputs and requirements, without names of parameters.
 fn numbers(summary: &Summary) -> Vec<(String, Vec<f64>)> {
     let reduced = summary.reduced.iter().map(|own| {
         let bands = own.bands.iter().flat_map(|band| [band.lower, band.upper, band.error]);
@@ -145,7 +145,7 @@ fn yields_of_parts_are_those_of_the_whole() {
         let width = own.interval[1] - own.interval[0] + other.interval[1] - other.interval[0];
         assert!((own.share - other.share).abs() <= width, "{own:?} {other:?}");
     }
-    // Of parts that are independent, all together are the product.
+    // For independent parts, all together are the product.
     let share = |name: &str| apart.requirements.iter().find(|own| own.requirement == name).unwrap().share;
     let together = apart.together.as_ref().unwrap();
     let product = share("tight1") * share("tight2");

@@ -96,7 +96,7 @@ fn statistics_are_those_of_the_polynomials_between_events() {
             let allowed = found.error + found.sampling + 3e-4 * deviation;
             assert!((found.value - value).abs() <= allowed, "{}: {found:?}, not {value}", own.name);
         }
-        // Of 4096 simulated motions it is 3 % of the deviation.
+        // With 4096 simulated motions it would be 3 % of the deviation.
         assert!(own.mean[2].sampling + own.mean[2].error < 3e-3 * deviation, "{:?}", own.mean[2]);
     }
 }

@@ -187,7 +187,7 @@ fn variance(stiffness: f64) -> f64 {
 fn white_noise_moves_an_oscillator_as_closed_forms_say() {
     let (_, bounds, _) = run(&format!("analysis: modes\n{}", oscillator("160 ± 10%", 0.0, "")));
     let (rms, crossings) = (output(&bounds, "x.rms"), output(&bounds, "x.crossings"));
-    // The band leaves out 0.02 % of the variance, and 4 % of that of the rate, S/(4 c m), above 25 Hz: S/(4π² f).
+    // The band omits 0.02 % of the variance, and 4 % of that of the rate, S/(4 c m), above 25 Hz: S/(4π² f).
     let near = |found: f64, expected: f64, share: f64| {
         assert!((found / expected - 1.0).abs() < share, "{found} {expected}");
     };

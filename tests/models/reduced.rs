@@ -85,7 +85,7 @@ fn a_pendulum_swings_as_elliptic_integrals_say() {
     assert!(summary.methods.iter().all(|method| method.method != "reduced outputs" || method.simulations <= 8));
 }
 
-/// Verdicts are those of the closed forms, and what fails can be shown.
+/// Verdicts are those of the closed forms, and failures can be shown.
 #[test]
 fn verdicts_follow_from_bounds_and_samples() {
     let description = read(PENDULUM);
@@ -160,7 +160,7 @@ fn a_damped_oscillator_overshoots_and_settles_as_its_closed_form() {
     assert!((mean.lower - band.lower / 0.3).abs() < 1e-12);
 }
 
-/// A maximum that changes place over the box: of two humps, each is the higher one in half of it.
+/// A maximum that jumps over the box: of two humps, each is the higher one in half of it.
 #[test]
 fn a_maximum_that_changes_place_has_its_kink() {
     let text = "
@@ -178,7 +178,7 @@ bounds: { chebyshev: { order: 5 } }
 ";
     let summary = summary(&read(text));
     // A surrogate of the maximum itself would be off by 0.01 at the kink.
-    // What one hump adds to the other's top: exp(-4.1²).
+    // Contribution of one hump at the other's top: exp(-4.1²).
     let other = (-16.81_f64).exp();
     check(&summary, "top", [0.5 * (1.0 + other), 0.6 + 0.4 * other], 1e-6);
     let band = &reduced(&summary, "place").bands[0];
@@ -232,7 +232,7 @@ bounds: { chebyshev: { order: 6 } }
         (lower, upper) = (f64::min(lower, top), f64::max(upper, top));
     }
     println!("[{lower}, {upper}] {band:?}");
-    // What the grids miss of the truth.
+    // Error of the grids.
     let missed = 1e-4;
     let off = (band.lower - lower).abs().max((band.upper - upper).abs());
     assert!(off <= band.error + missed && band.error < 0.05, "{band:?} instead of [{lower}, {upper}]");
@@ -318,7 +318,7 @@ fn the_tutorials_four_bar_is_decided() {
 
 #[test]
 fn an_uncertain_limit_that_no_equation_knows_counts() {
-    // x = k, at most room = 1.5 m ± 0.1 m: at worst 1.2 m beside 1.3 m (2 · 0.65 m).
+    // x = k, at most twice = 1.4 m ± 0.1 m: at worst 1.2 m against 1.3 m (2 · 0.65 m).
     let text = "
 parameters:
   k: { value: 1, tolerance: 0.2 }
@@ -364,8 +364,8 @@ bounds: { chebyshev: { order: 5 } }
     let Some(&[v, k]) = occurs.absent.as_deref() else { panic!("{occurs:?}") };
     assert!(v / k.sqrt() < 0.2, "it occurs at v = {v}, k = {k}");
     for case in far.worst.as_ref().unwrap() {
-        // Steps err by 1.1e-7 m, as `max: ball.x` states beside the surface: a sample that just misses the event may
-        // have it.
+        // Steps err by 1.1e-7 m, as `max: ball.x` states near the surface: the event may occur in a sample that just
+        // misses it.
         let [v, k] = case.parameters[..] else { panic!("{case:?}") };
         let height = v / k.sqrt();
         assert!(height > 0.2 - 1.1e-7, "{case:?} reaches {height} m");
@@ -426,15 +426,15 @@ bounds: { chebyshev: { order: 3 } }
     for name in ["kept", "at_the_end"] {
         let own = requirement(&summary, name);
         assert_eq!(own.verdict, Verdict::Holds, "{own:?}");
-        // Momentum is kept exactly, but for rounding.
+        // Momentum is conserved exactly, but for rounding.
         assert!((own.margin - 1e-3).abs() <= own.error + 1e-9, "{own:?}");
     }
     assert_eq!(requirement(&summary, "too_strict").verdict, Verdict::Violated);
     assert!(!summary.methods.iter().any(|method| method.method.contains("earlier")), "{:?}", summary.methods);
 }
 
-/// Angular momentum about a spring's end is m v r at the start and stays: its changes are the steps' error, beside
-/// which no error is small. It takes no shorter steps than the position does.
+/// Angular momentum about a spring's end is m v r at the start and stays: its changes are the steps' error, and no
+/// error is small relative to them. It takes no shorter steps than the position does.
 #[test]
 fn what_is_conserved_is_resolved_under_a_tolerance() {
     let text = "

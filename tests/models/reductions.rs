@@ -1,4 +1,4 @@
-//! Every reduction against its closed form, and what models that reduce nothing pay for it.
+//! Every reduction against its closed form, and its cost for models that reduce nothing.
 
 use mbint::inner::compile::Tapes;
 use mbint::inner::export::bounds_csv;

@@ -7,7 +7,7 @@ use mbint::{Error, Model};
 
 use crate::common::{curve, nominal};
 
-/// A robot, perhaps with other files beside it, and the model that names it.
+/// A robot, perhaps with other files next to it, and the model that names it.
 struct Robot {
     folder: tempfile::TempDir,
     file: &'static str,
@@ -177,7 +177,7 @@ fn a_box_of_any_format_has_the_inertia_of_a_box() {
     }
 }
 
-/// Three unit cubes in an angle; what MuJoCo 4.0 computes of it with each `inertia`, moved and scaled.
+/// Three unit cubes in an angle; its inertia by MuJoCo 4.0 with each `inertia`, moved and scaled.
 #[test]
 fn an_angle_has_the_inertia_that_mujoco_computes() {
     const CORNERS: &str = "0 0 0 2 0 0 2 1 0 1 1 0 1 2 0 0 2 0 0 0 1 2 0 1 2 1 1 1 1 1 1 2 1 0 2 1";

@@ -29,7 +29,7 @@ const MJCF: &str = "<mujoco><worldbody><body name='arm' pos='0 0 1'><joint name=
 const OF_HAND: [&str; 6] = ["x", "y", "z", "x", "y", "z"];
 
 /// Sensors `force` and `torque` of MuJoCo 4.0 at a site in the origin of `hand`, which it holds itself: the opposite of
-/// what the arm does to the hand.
+/// the arm's wrench on the hand.
 #[test]
 fn a_held_body_of_an_mjcf_feels_what_mujocos_sensors_say() {
     let yaml = "mjcf: robot.xml\ninitial: { elbow.angle: 0.3, elbow.angular_velocity: 0.6 }";

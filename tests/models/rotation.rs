@@ -1,4 +1,4 @@
-//! Rotations in space: what a scheme of the wrong order, or a body that is not rigid, would lose.
+//! Rotations in space: invariants that a scheme of the wrong order, or a body that is not rigid, would lose.
 
 use crate::common::{Subject, curve, largest, model, nominal, order, read, reference, richardson, row};
 

@@ -73,7 +73,7 @@ fn rows_that_no_event_passes_have_the_errors_of_steps() {
 }
 
 /// In a row through which the event passes, motions that are still before it are expanded at its time, too: one sample
-/// is a little beyond, where its flight goes on.
+/// is a little beyond, where its flight continues.
 #[test]
 fn motions_are_expanded_a_little_beyond_their_events() {
     let (bounds, _) = ran(study_of(&format!("{CEILING}bounds: {{ chebyshev: {{ order: 2 }} }}")));

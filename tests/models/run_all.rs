@@ -37,7 +37,7 @@ pub fn assert_complete(description: &Subject, bounds: &Bounds, summary: &Summary
         (Method::Scan, asked.scan.is_some()),
     ];
     let asked: Vec<Method> = all.into_iter().filter_map(|(method, asked)| asked.then_some(method)).collect();
-    // Of many parameters neither a scan nor jets are to be had: samples are compared in a test of the model's own.
+    // With many parameters neither a scan nor jets are possible: samples are compared in a test of the model's own.
     let is_compared = asked.len() > 1 || (summary.parameters.len() > MANY && asked == [Method::Chebyshev]);
     assert!(is_compared, "{}: one method is compared with nothing", description.name());
     for output in &bounds.outputs {

@@ -121,7 +121,7 @@ simulation: { duration: 1, step: 1e-3, output_step: 0.1 }
     )
 }
 
-/// What a step of length h does to the oscillator's (q, hv, h²a), measured on three independent states.
+/// Matrix by which a step of length h maps the oscillator's (q, hv, h²a), measured on three independent states.
 fn amplification(scheme: Scheme, h: f64) -> Matrix3<f64> {
     let simulator = compiled(&oscillator(), scheme, h);
     let layout = &simulator.program.layout;
@@ -242,7 +242,7 @@ fn index_2_keeps_velocities_on_the_constraints_and_lets_positions_drift() {
     assert!((order(coarse[0], fine[0]) - 2.0).abs() < 0.1 && fine[0] > 1e-6, "{coarse:?}, {fine:?}");
     // Newton's tolerance in positions is 1e-11 m: 2e-8 m/s over h/2.
     assert!(coarse[1] < 1e-12 && fine[1] < 1e-12, "{coarse:?}, {fine:?}");
-    // Of index 3 it is the other way round.
+    // With index 3 it is the other way round.
     let index_3 = worst(HHT, 1e-3);
     assert!(index_3[0] < 1e-12 && index_3[1] > 1e-6, "{index_3:?}");
 }
@@ -264,7 +264,7 @@ fn reaction_of_steps(description: &Subject, scheme: Scheme, h: f64) -> Vec<f64> 
 
 #[test]
 fn reactions_of_the_trapezoidal_rule_alternate_and_never_come_to_rest() {
-    // What alternates in a curve: half of how far a value lies off its neighbours' mean, with the sign of its parity.
+    // Alternating part of a curve: half of a value's difference from its neighbours' mean, with the sign of its parity.
     let alternating = |scheme, h: f64, time: f64| {
         let description = model("pendulum").observing(&["rod.force"]).duration(4.0).rows_every(h);
         let curve = reaction_of_steps(&description, scheme, h);

@@ -1,8 +1,7 @@
 //! The paper's slider crank against its own reference: minimal coordinates, DOP853 at 1e-11 and tighter (error below
 //! 1e-8).
 //!
-//! The scheme's error is C h² with C = 1.8e3 m/s² over 2 s (largest, in x3), which is what the tolerances below are
-//! made of.
+//! The scheme's error is C h² with C = 1.8e3 m/s² over 2 s (largest, in x3), from which the tolerances below are made.
 
 use mbint::RangeKind;
 use mbint::results::Method;

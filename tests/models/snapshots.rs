@@ -1,5 +1,5 @@
-//! The bounds of every file of `models/`, as they were when they were last looked at: `snapshots/`. They are what
-//! `mbint snapshot` records; insta is the reviewer.
+//! The bounds of every file of `models/`, as they were last reviewed: `snapshots/`. They are the records of
+//! `mbint snapshot`; insta is the reviewer.
 //!
 //! `cargo insta review` (or `INSTA_UPDATE=always cargo test --test models snapshots`) takes changes over. In CI a model
 //! without a snapshot fails.

@@ -1,5 +1,5 @@
-//! What the examples of the book answer, as it was when it was last looked at: `snapshots/answers/`. Reduced outputs,
-//! verdicts, statistics and analyses of one configuration, in six digits; errors are left out.
+//! Answers of the book's examples, as they were last reviewed: `snapshots/answers/`. Reduced outputs, verdicts,
+//! statistics and analyses of one configuration, in six digits, without errors.
 //!
 //! `INSTA_UPDATE=always cargo test --test models snapshots` takes changes over.
 

@@ -223,7 +223,7 @@ simulation: { duration: 2, step: 1e-3, output_step: 0.05 }
     assert!((order(errors[0], errors[1]) - 2.0).abs() < 0.1 && errors[1] < 1e-5, "{errors:?}");
 }
 
-/// What cannot be assembled since joints fix too much.
+/// Message for a mechanism that cannot be assembled since joints fix too much.
 fn refusal(joints: &str) -> String {
     let text = format!(
         "
@@ -280,7 +280,7 @@ simulation: {{ duration: 0.1, step: 1e-3 }}
     let message = refused(&spring("0.5"));
     println!("{message}");
     assert!(message.contains("the direction of `rope`, whose points coincide"), "{message}");
-    // Without a free length it is an ordinary spring, and the ball stays where it is.
+    // Without a free length it is an ordinary spring, and the ball stays at rest.
     let bounds = nominal(&read(&spring("0")));
     assert!(curve(&bounds, "x").iter().all(|x| x.abs() < 1e-15));
 }
@@ -316,7 +316,8 @@ simulation: {{ duration: 0.01, step: 1e-3, output_step: 0.01, formulation: {form
     }
 }
 
-/// A guess of what joints leave free is where it starts, named by the joint or by the body, in every formulation.
+/// A guess of a coordinate that joints leave free is its start, named by the joint or by the body, in every
+/// formulation.
 #[test]
 fn a_guess_places_what_nothing_else_places() {
     let start = |formulation: &str, guess: &str| {
@@ -395,7 +396,7 @@ simulation: {{ duration: 0.1, step: 1e-3 }}
         ran(study_of(&text).nominal()).1.shared_start
     };
     assert_eq!(shared("ground.high", "z"), Vec::<String>::new());
-    // Here height and side share what the plane leaves open.
+    // Here height and side share the freedom that the plane leaves.
     assert_eq!(shared("ground.high", "[1, 1, 2]"), ["ball.y", "ball.z"]);
 }
 
@@ -418,7 +419,7 @@ simulation: { duration: 0.1, step: 1e-3 }
     assert_eq!(shared, ["the rate of ball.y", "ball.omega"]);
 }
 
-/// A term of the constraints that is no number is told by the constraint that it is in.
+/// A term of the constraints that is no number is reported with the constraint that it is in.
 #[test]
 fn a_disc_that_lies_flat_has_no_lowest_point() {
     let error = refused(

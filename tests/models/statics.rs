@@ -184,7 +184,7 @@ outputs: {{ x: plate.x, y: plate.y, pull: pull.force }}
     for name in ["x", "y", "pull", "stability"] {
         close(value(&spatial, name), value(&plane, name), 1e-8);
     }
-    // Horizontal forces: the links take what the spring pulls; by virtual work of the one freedom φ of both links.
+    // Horizontal forces: the links carry the spring's pull; by virtual work of the one freedom φ of both links.
     let (x, y) = (value(&plane, "x"), value(&plane, "y"));
     let sine = (x - 0.5) / 0.5;
     let (bx, by) = (x + 0.5, y);
@@ -223,7 +223,7 @@ fn an_equilibrium_meets_requirements_with_their_closed_forms_margin() {
     assert!((nearest.margin - (-0.35 - angle_of(33.0))).abs() < 1e-9, "{}", nearest.margin);
 }
 
-/// Many parameters of what rests, or is moved by motors, take as few simulations as those of a motion. The ends of a
+/// Many parameters of a body at rest, or moved by motors, take as few simulations as those of a motion. The ends of a
 /// sum are the sums of ends; of the product, in logarithms, too.
 #[test]
 fn many_parameters_of_other_analyses_take_few_simulations() {

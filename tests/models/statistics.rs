@@ -1,12 +1,12 @@
-//! Statistics beside the bounds, against closed forms (linear, quadratic, product of normals) and against direct Monte
-//! Carlo of the simulation.
+//! Statistics in addition to the bounds, against closed forms (linear, quadratic, product of normals) and against
+//! direct Monte Carlo of the simulation.
 
 use mbint::results::{OutputStatistics, Summary, Uncertain};
 
 use crate::common::random::Random;
 use crate::common::{Subject, output, read, run};
 
-/// A body at rest at a place that a formula gives.
+/// A body at rest at a position that a formula gives.
 fn at_rest_text(parameters: &str, place: &str, more: &str) -> String {
     format!(
         "
@@ -297,8 +297,8 @@ fn many_parameters_have_errors_of_products() {
     assert!(found.resolved.iter().all(|resolved| *resolved));
 }
 
-/// Of a sum the surrogate is exact over the whole box: the share is known as well as its samples tell, and not as a
-/// thousand products do.
+/// The surrogate of a sum is exact over the whole box: the error of the share is that of its own samples, not that of a
+/// thousand products.
 #[test]
 fn many_dimensions_have_errors_of_their_exact_surrogate() {
     const DIMENSIONS: usize = 14;

@@ -32,7 +32,7 @@ fn a_tolerance_takes_the_steps_that_it_needs() {
         summary.methods[0].steps
     });
     println!("{steps:?}");
-    // h ∼ tol^(1/2): a tenth, less what rows every 0.01 s cut off.
+    // h ∼ tol^(1/2): a tenth, less the steps that rows every 0.01 s cut off.
     let ratio = steps[1] as f64 / steps[0] as f64;
     assert!((6.0..11.0).contains(&ratio), "{steps:?}");
 }

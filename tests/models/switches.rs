@@ -21,7 +21,7 @@ simulation: { duration: 1.5, tolerance: 1e-6, output_step: 0.03 }
 bounds: { scan: { points: 17 } }
 ";
 
-/// Height of a ball that bounces without loss; contacts last π/ω and shift the flights by what gravity adds to that.
+/// Height of a ball that bounces without loss; contacts last π/ω and a little longer by gravity, and shift the flights.
 fn bounces(height: f64, t: f64) -> f64 {
     let (g, omega) = (9.81, (3e8_f64 / 2.0).sqrt());
     let speed = (2.0 * g * height).sqrt();
@@ -40,7 +40,7 @@ fn bounces(height: f64, t: f64) -> f64 {
     speed * flight - 0.5 * g * flight * flight
 }
 
-/// Ends of the heights over the box, from many of them: the box's ends and what lies between.
+/// Ends of the heights over the box, from many samples: the box's ends and points between them.
 fn truth(t: f64) -> [f64; 2] {
     let heights = (0..=4000).map(|place| bounces(0.7 * (0.99 + 0.02 * f64::from(place) / 4000.0), t));
     heights.fold([f64::INFINITY, f64::NEG_INFINITY], |[lower, upper], y| [lower.min(y), upper.max(y)])
@@ -148,7 +148,7 @@ bounds: { scan: { points: 3 } }
     }
 }
 
-/// What a user asks for is the error of the result, within its own movement.
+/// The requested tolerance is the error of the result, relative to the result's own movement.
 #[test]
 fn the_tolerance_is_the_error_of_the_result() {
     let text = "
@@ -252,7 +252,7 @@ fn the_summary_has_the_search_for_switches() {
     assert_eq!(without.unmet_switch, None);
 }
 
-/// Of more than three parameters, samples that are spread over the box are looked at.
+/// With more than three parameters, samples that are spread over the box are examined.
 #[test]
 fn five_parameters_are_searched_for_switches() {
     let text = |stop: f64| {
@@ -315,7 +315,7 @@ bounds: {{ chebyshev: {{ order: 8 }}, scan: {{ points: 15 }} }}
     }
 }
 
-/// What every sample meets, each at its own time, is no surprise.
+/// An event that every sample meets, each at its own time, is not flagged.
 #[test]
 fn a_wall_that_all_samples_meet_flags_nothing() {
     let text = "

@@ -4,7 +4,7 @@ use crate::common::{band, curve, distance, load, nominal, output, read, run};
 use mbint::results::Method;
 use std::fmt::Write as _;
 
-/// A recording of a sine drives a mass as the sine itself does, but for what a spline of its samples leaves.
+/// A recording of a sine drives a mass as the sine itself does, but for the error of a spline through its samples.
 #[test]
 fn a_recording_drives_like_what_was_recorded() {
     let folder = tempfile::tempdir().unwrap();

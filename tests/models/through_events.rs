@@ -59,7 +59,7 @@ pub fn integrated(summary: &Summary, method: &str) -> (bool, usize, usize) {
     (between_events, of_method.simulations, of_method.steps)
 }
 
-/// Asserts that ranges hold the truths' up to the stated errors, and are not wider than these and `slack` tell.
+/// Asserts that ranges contain the truths' up to the stated errors, and are wider by at most these and `slack`.
 #[track_caller]
 pub fn assert_true(bounds: &Bounds, name: &str, stated: f64, slack: f64, truth: impl Fn(f64) -> [f64; 2]) {
     let band = band(output(bounds, name), Method::Chebyshev);
@@ -292,7 +292,7 @@ fn jets_go_through_instants_that_are_known_to_rounding() {
     assert_within(&bounds, "y", Method::Taylor, 5e-5, |t| of_line(0, t));
 }
 
-/// Differences of a scan's few samples tell nothing of the motions between them.
+/// Differences of a scan's few samples say nothing about the motions between them.
 #[test]
 fn errors_of_scans_are_those_of_motions_between_events() {
     assert_throws("scan: { points: 5 }", Method::Scan);
@@ -360,7 +360,7 @@ fn a_ball_that_comes_to_rest_is_followed_to_the_end() {
 }
 
 /// A ball that bounces more often than events are followed: bounds are sharp up to the last of them, and the summary
-/// tells when that is.
+/// has its time.
 #[test]
 fn bounces_without_end_are_flagged_from_a_time() {
     let text = ELASTIC.replace("K: { value: 1e5, unit: N/m, tolerance: 5% }", "K: 1e5 N/m");

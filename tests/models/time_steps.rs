@@ -1,4 +1,4 @@
-//! The error of the time steps where halving them alone does not show it: what happens between steps, at their own
+//! The error of the time steps where halving them alone does not show it: motions between steps, at the steps' own
 //! period, or faster than they are. Truths are closed forms over dense grids of the parameters.
 
 use std::f64::consts::{PI, TAU};
@@ -134,7 +134,7 @@ fn a_force_with_the_period_of_a_step_is_seen() {
     findings.none();
 }
 
-/// A position that is prescribed with a fast ripple: its acceleration is what counts.
+/// A position that is prescribed with a fast ripple: its acceleration determines the steps.
 #[test]
 fn a_ripple_of_a_prescribed_position_is_seen() {
     let text = "
@@ -209,7 +209,7 @@ bounds: {{ chebyshev: {{ order: 6 }}, scan: {{ points: 25 }} }}
         let flagged = check(&mut findings, &bounds, "x", 10.0, x);
         findings.check(flagged == 0.0, format_args!("x is flagged"));
         check(&mut findings, &bounds, "v", 10.0, v);
-        // What the mode does not move has no part of it.
+        // The mode does not move this output, and has no part in its error.
         let flagged = check(&mut findings, &bounds, "both", 10.0, both);
         findings.check(flagged == 0.0, format_args!("both is flagged"));
         let found = summary.damped_mode.expect("the mode is reported");
@@ -249,7 +249,7 @@ bounds: { chebyshev: { order: 6 }, scan: { points: 25 } }
     findings.none();
 }
 
-/// A narrow peak over the parameter that no sample is near: what samples say of the steps' error is none of its error.
+/// A narrow peak over the parameter between the samples: the steps' error at samples is none of its error.
 #[test]
 fn ends_that_no_sample_carries_have_the_error_of_the_coordinates() {
     let text = "
@@ -268,7 +268,7 @@ bounds: { chebyshev: { order: 6 } }
     findings.none();
 }
 
-/// A heavy top about a fixed point, at steps that are long for its spin: what halving changes is zero now and then,
+/// A heavy top about a fixed point, at steps that are long for its spin: the change by halving is zero now and then,
 /// where the error is not.
 #[test]
 fn errors_of_a_fast_top_are_honest() {

@@ -42,8 +42,8 @@ fn the_tolerance_is_met() {
 }
 
 /// Over two seconds cranks turn six times, and part by a quarter of a turn. Their angles took polynomials of degree 34
-/// and 411 simulations, held against 17 samples; compared with the course of one of them, they took degree 12, and 324
-/// simulations where each surrogate is held against new samples.
+/// and 411 simulations, tested against 17 samples; relative to the course of one of them, they took degree 12, and 324
+/// simulations where each surrogate is tested against new samples.
 #[test]
 fn what_turns_takes_few_simulations() {
     let description = within(model("slider_crank").observing(&["slider.x"]), 1e-5, 400).scan(13);
@@ -341,8 +341,7 @@ fn every_model_is_bounded_to_a_per_cent() {
     }
 }
 
-/// A bob between three equal springs stays where it is. What rounding makes of that is no motion that bounds could
-/// miss.
+/// A bob between three equal springs stays at rest. Its rounding errors are no motion that bounds could miss.
 #[test]
 fn what_moves_by_rounding_alone_is_at_rest() {
     let spring = |name: &str| {

@@ -50,7 +50,7 @@ fn close([lower, upper]: [f64; 2], error: f64, expected: [f64; 2]) {
     assert!(off.iter().all(|off| off.abs() <= error + 1e-9), "{lower}, {upper} ± {error}, not {expected:?}");
 }
 
-/// Of the sum of all stiffnesses, least and greatest.
+/// Least and greatest sum of all stiffnesses.
 fn sums() -> [f64; 2] {
     [0.9, 1.1].map(|share| share * SPRINGS as f64 * STIFFNESS)
 }

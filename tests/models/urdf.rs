@@ -79,7 +79,7 @@ fn errors_of_swinging(urdf: &Path, starts: &[&str], rows: &[Vec<f64>]) -> [f64; 
     })
 }
 
-/// At most 1e-4 rad or m off at h = 1e-3 s, and as second order tells at half of it.
+/// At most 1e-4 rad or m off at h = 1e-3 s, and of second order at half of it.
 fn second_order(case: Case, [coarse, fine]: [f64; 2]) -> Case {
     case.at_most("largest distance, m or rad", coarse, 1e-4).order("order", order(coarse, fine), 2.0)
 }
@@ -133,7 +133,7 @@ fn welded_links_are_one_body() {
     let description = study.description();
     assert_eq!(description.bodies.len(), 2, "ground and a");
     let body = &description.bodies[1];
-    // b's centre is at (0.1, 0, −1) + R_z(90°) (0.2, 0, 0) = (0.1, 0.2, −1) of a; its x and y change places.
+    // b's centre is at (0.1, 0, −1) + R_z(90°) (0.2, 0, 0) = (0.1, 0.2, −1) of a; its x and y are exchanged.
     let center = [0.3 / 5.0, 0.6 / 5.0, -4.0 / 5.0];
     let found = body.center_of_mass.as_ref().unwrap().each_ref().map(number);
     let reduced = 2.0 * 3.0 / 5.0;
@@ -377,7 +377,7 @@ fn a_link_without_mass_at_the_end_is_left_out() {
     assert_eq!(nominal(&description).outputs.len(), 1);
 }
 
-/// What urdf-rs reads of the same text, as another reader of the format.
+/// Numbers of urdf-rs, another reader of the format, for the same text.
 #[test]
 fn numbers_are_those_of_urdf_rs() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("models/arm.urdf");

@@ -19,7 +19,7 @@ fn of_digits(step: f64) -> f64 {
     step / 12.0_f64.sqrt()
 }
 
-/// A model of `tests/validation` with other texts in some places.
+/// A model of `tests/validation` with some texts replaced.
 fn model(file: &str, replaced: &[(&str, String)]) -> Subject {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/validation").join(file);
     let mut text = std::fs::read_to_string(path).unwrap();

@@ -33,7 +33,7 @@ fn the_quarter_car_drives_over_its_bump() {
     assert!((order(errors[0], errors[1]) - 2.0).abs() < 0.1 && errors[1] < 2e-5, "{errors:?}");
 }
 
-/// What the axle's spring of `braking_car.yaml` pushes, by the height of its end and its rate.
+/// Force of the axle's spring of `braking_car.yaml`, by the height of its end and its rate.
 fn axle(height: f64, rate: f64) -> f64 {
     -22e3 * height - 1.8e3 * rate
 }

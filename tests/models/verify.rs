@@ -1,4 +1,4 @@
-//! Orders of manufactured motions: models of which theory is known, and what stands against a verification.
+//! Orders of manufactured motions: models with known theory, and obstacles to a verification.
 
 use mbint::{Error, Exchange, Model, Quantity, Verification};
 
@@ -68,7 +68,7 @@ fn a_kink_is_named() {
     assert!(why.contains("not smooth"), "{why}");
 }
 
-/// What the effects of a block on a spring do to its energy, in both formulations; the equations' rows are balanced.
+/// Exchange of energy of each effect of a block on a spring; the equations' rows are balanced.
 fn exchanges(effects: &str) -> Vec<Exchange> {
     let text = format!(
         "model: block\nbodies:\n  block: {{ mass: 2, inertia: 0.1, coordinates: [x, y, angle], points: {{ P: [0.3, -0.2] }} }}\n\

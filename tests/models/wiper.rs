@@ -1,5 +1,5 @@
-//! `wiper.yaml` against geometry and power: pins are where circles meet, and the motor gives what the glass takes and
-//! the swinging masses gain.
+//! `wiper.yaml` against geometry and power: pins are where circles meet, and the motor gives the power that the glass
+//! takes and the swinging masses gain.
 
 use std::f64::consts::TAU;
 
@@ -52,7 +52,7 @@ fn the_wipers_pins_are_where_circles_meet() {
     let bounds = nominal(&model("wiper").observing(&names));
     for (side, name) in names.iter().enumerate() {
         let error = distance_from(&bounds.times, curve(&bounds, name), |t| arm(t, side));
-        // Newton's tolerance (1e-11 of the model's size) times what the closed form's slope makes of it.
+        // Newton's tolerance (1e-11 of the model's size) times the slope of the closed form.
         assert!(error < 1e-10, "{name} is off by {error:e}");
     }
 }

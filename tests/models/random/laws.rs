@@ -109,7 +109,7 @@ fn energy_is_balanced() {
     });
 }
 
-/// What floats keeps its momentum, linear to rounding, angular to second order.
+/// A floating mechanism keeps its momentum, linear to rounding, angular to second order.
 #[test]
 fn momentum_is_conserved() {
     let floating = |kind: Kind| Kind { floating: true, ..kind };
@@ -215,7 +215,7 @@ fn is_apart_by_steps(mechanism: &Mechanism, apart: impl Fn(f64) -> f64) -> Resul
     Ok(())
 }
 
-/// Nor on what bodies are called, and in which order they are written.
+/// Motion does not depend on the names of bodies and the order in which they are written, either.
 #[test]
 fn motion_does_not_depend_on_names_and_order() {
     let looped = |kind: Kind| Kind { looped: true, ..kind };
@@ -233,7 +233,7 @@ fn motion_does_not_depend_on_names_and_order() {
     });
 }
 
-/// What nothing damps comes back the way it went, but for the scheme's dissipation, of second order.
+/// An undamped motion comes back the way it went, but for the scheme's dissipation, of second order.
 #[test]
 fn undamped_motion_goes_back() {
     holds(&[PLANAR, Kind { floating: true, ..PLANAR }], |mechanism| {

@@ -22,7 +22,7 @@ pub struct Mechanism {
     pub kind: Kind,
     pub bodies: Vec<Body>,
     pub springs: Vec<Spring>,
-    /// The last body, held at a distance from a point of the ground.
+    /// Distance of the last body from a point of the ground.
     pub tie: Option<Tie>,
     pub gravity: Vector,
 }
@@ -33,7 +33,7 @@ pub struct Body {
     pub mass: f64,
     /// Principal, about its centre of mass.
     pub inertia: Vector,
-    /// The body before it, by its place; absent for the first, which the ground holds unless it floats.
+    /// Index of the body before it; `None` for the first, which is joined to the ground unless it floats.
     pub before: Option<usize>,
     /// The joint, on the body before and on this one.
     pub joint: [Vector; 2],

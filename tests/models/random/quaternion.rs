@@ -14,7 +14,7 @@ impl Quaternion {
         Self([cos, 0.0, 0.0, sin])
     }
 
-    /// Of any four numbers that are not all zero.
+    /// Unit quaternion along any four numbers that are not all zero.
     pub fn along(numbers: [f64; 4]) -> Self {
         let norm = numbers.iter().map(|x| x * x).sum::<f64>().sqrt();
         Self(numbers.map(|x| x / norm))

@@ -16,14 +16,14 @@ pub struct Scene {
     /// The turn in the plane.
     pub angle: f64,
     pub shift: Vector,
-    /// What bodies are called, before their number.
+    /// Prefix of the names of bodies, before their number.
     pub name: &'static str,
     /// Bodies, joints and springs from the last to the first.
     pub reversed: bool,
     /// s
     pub step: f64,
     pub duration: f64,
-    /// Formulas to look at, in which `{i}` is body i.
+    /// Formulas to observe, in which `{i}` is body i.
     pub outputs: Vec<String>,
 }
 
@@ -152,7 +152,7 @@ impl Scene {
             let name = self.body(index);
             let [x, y, z] = add(self.shift, self.turn.turn(body.place));
             let [vx, vy, vz] = self.turn.turn(body.velocity);
-            // The joints give the places of all bodies but a floating one.
+            // The joints determine the positions of all bodies but a floating one.
             if guessed != (mechanism.kind.floating && body.before.is_none()) {
                 lines.push(format!("{name}.x: {x:?}\n  {name}.y: {y:?}"));
                 lines.extend(spatial.then(|| format!("{name}.z: {z:?}")));
