@@ -64,14 +64,14 @@ fn worst_cases_of_a_stack_are_lagranges() {
     near(&column(&place, "after.share"), &shares, 5e-3);
     let cost: Vec<f64> = (0..3).map(|i| costs[i] * BEFORE[i] / wanted[i]).collect();
     near(&column(&place, "after.cost"), &cost, 2e-3);
-    // The overlay is what a run, a check and a scene take.
+    // A run, a check and a scene take the overlay.
     let (printed, _) = place.run("run stack.yaml --with out/allocation.yaml -o again --no-report", 0);
     assert!(printed.contains("holds"), "{printed}");
     place.run("check stack.yaml --with out/allocation.yaml", 0);
     place.run("show stack.yaml --with out/allocation.yaml -o shown", 0);
     place.run("snapshot stack.yaml --with out/allocation.yaml -o shown -q", 0);
     place.run("snapshot stack.yaml --with out/allocation.yaml -o shown --check -q", 0);
-    // Of a and b together, 0.39 mm are left of 0.5 mm.
+    // a and b together take 0.39 mm of 0.5 mm.
     place.run("sweep stack.yaml --set c=0.051..0.05102:2±1e-9 --with out/allocation.yaml -o swept -q", 0);
     place.run("sweep stack.yaml --set c=0.051..0.05102:2±1e-9 -o swept -q", 4);
     let (_, errors) = place.run("sweep stack.yaml --set c=1..2:2 --set c=1..2:2", 2);
@@ -93,7 +93,7 @@ fn yields_of_a_stack_are_lagranges_to_a_thousandth() {
     let costs = [1.0, 4.0, 2.0];
     let texts = costs.map(|cost| format!("cost: {{ reciprocal: {cost} }}, distribution: normal"));
     stack(&place, [&texts[0], &texts[1], &texts[2]]);
-    // Normal quantiles: Φ(−z) of both sides is what may fail.
+    // Normal quantiles: Φ(−z) of both sides is the share that may fail.
     for (share, z) in [("99.73%", 2.999_977), ("99.9999%", 4.891_638), ("99%", 2.575_829)] {
         let (printed, _) = place.run(&format!("allocate stack.yaml --yield {share} -o out"), 0);
         assert!(printed.contains("ppm"), "{printed}");
@@ -161,16 +161,16 @@ fn angle([d, a, b, c]: [f64; 4], theta: f64) -> f64 {
         - ((f2 + c * c - b * b) / (2.0 * f2.sqrt() * c)).acos()
 }
 
-/// Lengths of the four-bar's base, crank, coupler and rocker, their tolerances and what these cost.
+/// Lengths of the four-bar's base, crank, coupler and rocker, their tolerances and costs.
 const LENGTHS: [f64; 4] = [0.3, 0.1, 0.26, 0.22];
 const TOLERANCES: [f64; 4] = [0.2e-3, 0.1e-3, 0.2e-3, 0.15e-3];
 const COSTS: [f64; 4] = [1.0, 3.0, 2.0, 5.0];
 
-/// Within so much of its nominal angle, at 0.15 s with one turn a second.
+/// Largest deviation from the nominal angle, at 0.15 s with one turn a second.
 const LIMIT: f64 = 2e-3;
 const THETA: f64 = 0.15 * std::f64::consts::TAU;
 
-/// A four-bar of which the output angle at one time is limited.
+/// A four-bar whose output angle at one time is limited.
 fn bars(place: &Place) {
     let nominal = angle(LENGTHS, THETA);
     let parameter = |place: usize, name: &str| {
@@ -251,7 +251,7 @@ fn a_four_bars_yield_is_that_of_its_closed_form() {
     let count = 1 << 20;
     let mut fails = || (angle(std::array::from_fn(|i| LENGTHS[i] + found[i] * drawn()), THETA) - nominal).abs() > LIMIT;
     let failed = (0..count).filter(|_| fails()).count() as f64 / f64::from(count);
-    // Of the sampled share, 1e-4 is the standard deviation; what the errors reserve is not used.
+    // The standard deviation of the sampled share is 1e-4; the reserve for errors is not used.
     assert!(failed <= 0.01 + 3e-4 && failed > 0.0085, "{failed} {printed}");
 }
 
@@ -271,7 +271,7 @@ fn the_guides_example_is_run() {
     assert!(taken <= 0.35e-3 + 1e-12 && taken > 0.349e-3, "{taken}");
 }
 
-/// Tolerances that a study has confirmed are kept at an interruption, where further rounds look for cheaper ones.
+/// Confirmed tolerances survive an interruption of further rounds, which search for cheaper ones.
 #[test]
 fn an_interruption_keeps_what_is_confirmed() {
     let place = Place::new();

@@ -1,5 +1,5 @@
-//! The table of analyses and questions: every question is asked in every analysis, and what comes is what the table
-//! says.
+//! The table of analyses and questions: every question is asked in every analysis, and the results are those of the
+//! table.
 
 use std::fs;
 use std::path::Path;
@@ -63,7 +63,7 @@ const ANALYSES: [Analysis; 7] = [
     Analysis { keys: "analysis: dimensions", body: "", output: "x", limited: "x <= 0.3 m" },
 ];
 
-/// What a question adds to a model.
+/// Text of an analysis's model with a question.
 fn asked(question: &str, analysis: &Analysis) -> String {
     let reduced = format!(", most: {{ max: {} }}", analysis.output);
     let statistics = "statistics: { samples: 16384, quantiles: [5%, 99.9%] }";
@@ -98,7 +98,7 @@ fn read(place: &Place, file: &str) -> String {
     fs::read_to_string(place.path().join("out").join(file)).unwrap_or_default()
 }
 
-/// What a cell of the table says that a run yields.
+/// Asserts that a run yields the results of a cell of the table.
 fn check(question: &str, cell: &str, analysis: &Analysis, column: usize) {
     let place = Place::new();
     let text = asked(question, analysis);
@@ -157,7 +157,7 @@ fn every_question_is_answered_as_the_table_says() {
     assert!(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/reference/analyses.md").exists());
 }
 
-/// Two lags of a filter have time constants and no frequency: the message names what there is.
+/// Two lags of a filter have time constants and no frequency: the message names the existing results.
 #[test]
 fn results_that_an_analysis_does_not_find_are_refused_with_those_that_it_does() {
     let place = Place::new();

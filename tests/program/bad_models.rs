@@ -91,7 +91,7 @@ fn bad_models_are_reported_in_their_places() {
         if update {
             let body: String = text.split_inclusive('\n').skip(expected.len()).collect();
             let with = |lines: &[String]| format!("{}\n{body}", lines.join("\n"));
-            // The places move down by the lines that are written: once more gives them as they then are.
+            // The locations move down by the lines that are written: a second pass gives the final ones.
             fs::write(&path, with(&got)).unwrap();
             let moved = commented(&path, found(&told(Model::from_file(&path))));
             fs::write(&path, with(&moved)).unwrap();
@@ -215,7 +215,7 @@ fn all_errors_of_a_large_file_are_counted() {
     assert!(diagnostics.render(false).ends_with("… and 19949 more\n"));
 }
 
-/// One habit that is wrong is one message, with the lines where it is found again; machines get all of them.
+/// One repeated mistake is one message, with the lines of its repetitions; machines get all of them.
 #[test]
 fn a_message_that_comes_often_is_shown_once() {
     let mut text = "outputs: { x: b1.x }\nsimulation: { duration: 1 }\nbodies:\n".to_owned();

@@ -308,7 +308,7 @@ bounds: { chebyshev: { order: 2 } }
     assert!(error < 1e-3 && within(&bounds[1], 0.81 * 6.0) && within(&bounds[2], 1.21 * 6.0), "{values}");
 }
 
-/// What a script answered is kept with `--store`, and asked anew where the script has changed.
+/// The answers of a script are stored with `--store`, and asked anew if the script has changed.
 #[test]
 fn stored_answers_are_those_of_the_script() {
     let place = place("right", "bounds: { chebyshev: { order: 3 } }");

@@ -1,4 +1,4 @@
-//! Certificates of `mbint run --certify`, and what `mbint verify-certificate` refuses.
+//! Certificates of `mbint run --certify`, and refusals by `mbint verify-certificate`.
 
 use std::cell::Cell;
 use std::fs;
@@ -100,7 +100,7 @@ fn certificates_are_proven_again_and_changed_ones_are_refused() {
     let found = refuse(&change(row, &bound, &format!("{upper} {upper}")), "", 4);
     assert!(found.contains("output x at 0.2 s is not proven to be between"), "{found}");
 
-    // Parameters in no piece, and a start at another place.
+    // Parameters in no piece, and another position at the start.
     let piece = first(&lines, "piece");
     let parsed: serde_json::Value = serde_json::from_str(&lines[piece]).unwrap();
     let lower = parsed["piece"]["lower"].as_str().unwrap().to_owned();

@@ -151,7 +151,7 @@ fn bounds_that_miss_their_tolerance_have_a_status_of_their_own() {
     let (heading, last) = (table.lines().next().unwrap(), table.lines().last().unwrap());
     assert!(heading.ends_with(",unresolved") && last.contains(".chebyshev"), "{last}");
     assert!(place.files("results/crank").iter().any(|name| name == "contributions.csv"));
-    // What cannot be asked for together is reported.
+    // A parameter that the model does not have is reported.
     let (_, errors) = place.run("run crank.yaml --method chebyshev --set nothing=1", 2);
     assert!(errors.contains("nothing"), "{errors}");
 }
@@ -267,8 +267,8 @@ fn a_full_disk_is_a_failure() {
     assert!(errors.starts_with("error: cannot write to standard output: "), "{errors}");
 }
 
-/// One sample of the scan is held by a brake that no other sample feels: at rest its force jumps in every step, and the
-/// tolerance takes more steps than a sample may have.
+/// One sample of the scan is stopped by a brake that no other sample feels: at rest its force jumps in every step, and
+/// the tolerance takes more steps than a sample may have.
 #[test]
 fn a_sample_beyond_the_tolerance_ends_with_3() {
     let place = Place::new();

@@ -2,8 +2,8 @@
 //! the book has the pages.
 //!
 //! A page's block `yaml` is a model, or sections that stand instead of those of `codes::MODEL`; `xml` is a robot; with
-//! a name behind it, a block is a file beside the model; `sh` has commands. The place of the mistake is marked by the
-//! code in a comment.
+//! a name behind it, a block is a file next to the model; `sh` has commands. The location of the mistake is marked by
+//! the code in a comment.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -77,14 +77,14 @@ impl Tried {
         Self { folder, main, commands }
     }
 
-    /// Codes with the lines of their places, 0 where there is none; and all that was said.
+    /// Codes with their lines, 0 if there is no line; and the text of all messages.
     fn read(&self) -> (Vec<(Code, usize)>, String) {
         let diagnostics = told(Model::from_file(&self.main));
         let found = diagnostics.records().iter().map(|record| (record.code, record.line.unwrap_or(0))).collect();
         (found, diagnostics.render(false))
     }
 
-    /// Whether the last command succeeded, if only in part; and all that was said.
+    /// Whether the last command succeeded, if only in part; and the text of all messages.
     fn run(&self) -> (bool, String) {
         let binary = Path::new(env!("CARGO_BIN_EXE_mbint"));
         let path = format!("{}:{}", binary.parent().unwrap().display(), std::env::var("PATH").unwrap());

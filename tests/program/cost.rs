@@ -67,7 +67,7 @@ fn errors_fall_as_they_must_and_have_the_right_sign() {
         .output()
         .unwrap();
     let (text, errors) = (String::from_utf8(output.stdout).unwrap(), String::from_utf8(output.stderr).unwrap());
-    // On a slow machine it tells its progress.
+    // On a slow machine it reports its progress.
     assert!(output.status.success() && errors.lines().all(|line| line.contains(" % done")), "{errors}");
 
     let mut reader = csv::Reader::from_path(place.path().join("results/oscillator/cost.csv")).unwrap();
@@ -83,8 +83,8 @@ fn errors_fall_as_they_must_and_have_the_right_sign() {
         [number(row, "over_width"), number(row, "under_coverage")]
     };
 
-    // With fine steps the order is what counts: each is at least twice as good as the one before, down to what the
-    // steps leave.
+    // With fine steps the order determines the error: each is at least twice as good as the one before, down to the
+    // error of the steps.
     for (method, least) in [("chebyshev.coordinates", 7e-4), ("chebyshev.tight", 7e-4)] {
         let errors = ["2", "3", "5", "8"].map(|order| error(method, order, finest));
         assert!(errors.windows(2).all(|pair| pair[1] < 0.5 * pair[0] || pair[1] < least), "{method}: {errors:?}");
@@ -94,11 +94,11 @@ fn errors_fall_as_they_must_and_have_the_right_sign() {
     let falling = [200, 400, 800].map(|steps| error("chebyshev.tight", "8", steps));
     assert!(falling.windows(2).all(|pair| (pair[0] / pair[1] - 4.0).abs() < 0.5), "{falling:?}");
 
-    // The paper's Σ|c| is too wide by a third of the band, however high the order, and leaves nothing out.
+    // The paper's Σ|c| is too wide by a third of the band, however high the order, and omits nothing.
     let [wide, narrow] = sides("chebyshev.interval", "8");
     assert!((wide - 0.36).abs() < 0.02 && narrow < 1e-3, "{wide}, {narrow}");
-    // A scan leaves out values between its points and the validation samples, which its band holds too, and is never
-    // too wide; denser ones leave out less.
+    // A scan omits values between its points and the validation samples, which its band contains too, and is never too
+    // wide; denser ones omit less.
     let scans = ["5", "10", "30"].map(|points| sides("scan", points));
     assert!(scans.iter().all(|[wide, narrow]| *wide < 1e-4 && narrow > wide), "{scans:?}");
     assert!(scans.windows(2).all(|pair| pair[1][1] < pair[0][1]), "{scans:?}");

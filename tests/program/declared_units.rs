@@ -43,7 +43,7 @@ fn is_near(found: f64, wanted: f64) {
     assert!((found - wanted).abs() <= 1e-4 * wanted.abs(), "{found}, not {wanted}");
 }
 
-/// The margin of what reaches −1.01 g/8, in inches.
+/// The margin of a motion that reaches −1.01 g/8, in inches.
 fn margin() -> f64 {
     (1.0 - 1.01 * 9.81 / 8.0) / INCH
 }

@@ -1,4 +1,4 @@
-//! What the project depends on: licences, and no unsafe code of its own where none is needed.
+//! Dependencies of the project: licences, and no unsafe code of its own where none is needed.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -79,7 +79,7 @@ fn unsafe_code_is_forbidden_in_every_crate_but_three() {
     assert_eq!(allowing, three.map(Path::new));
     let [units, page] = [0, 1].map(|index| fs::read_to_string(Path::new(ROOT).join(&allowing[index])).unwrap());
     assert!([&units, &page].iter().all(|root| root.contains("#![deny(unsafe_code)]")));
-    // Of the page, in its functions of C alone; of units, in the room `native` alone.
+    // The page has it in its functions of C alone; units have it in the room `native` alone.
     let allowed = page.matches("#[allow(unsafe_code").count();
     assert!(allowed == 1 && page.contains("linear memory is shared with the page\")]\nmod abi;"));
     let mut folders = vec![Path::new(ROOT).join("crates/fmu/src")];

@@ -132,7 +132,7 @@ fn a_model_without_a_design_is_told_what_it_lacks() {
     assert!(error.contains("the model has no `design`"), "{error}");
 }
 
-/// Of sixteen parameters no grid is possible. The worst case of both requirements has all of the fifteen at one end:
+/// Sixteen parameters allow no grid. The worst case of both requirements has all of the fifteen at one end:
 /// (20 − s² − 15 · 1.01²)/20 and (s + 15 · 0.99 − 16.5)/16.5 are the same at the best s.
 #[test]
 fn many_parameters_have_a_design() {

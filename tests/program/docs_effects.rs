@@ -1,4 +1,4 @@
-//! What `docs/guides/effects.md` shows is so: every example is assembled, every picture is shown; and the reference of
+//! `docs/guides/effects.md` is correct: every example is assembled, every picture is shown; and the reference of
 //! effects is that of the code.
 
 use std::path::Path;

@@ -1,5 +1,5 @@
-//! Parameters set on the command line, models from standard input, numbers that agree between commands, and what
-//! results say of themselves.
+//! Parameters set on the command line, models from standard input, numbers that agree between commands, and the
+//! provenance that results state.
 
 use std::fs;
 use std::io::Write;
@@ -133,7 +133,7 @@ fn what_older_scenes_left_goes() {
         ["one", "other", "report.html", "scenes.csv", "scenes.json", "two", "y.svg"]
     );
     assert_eq!(place.files("results/slides/two"), ["mine.txt"]);
-    // Scenes that were not asked for are kept.
+    // Scenes that were not requested stay.
     model("scenes: { one: {}, other: {}, more: {}, last: {} }\n");
     place.run("run slides.yaml --method scan -q --scene more --scene last", 0);
     assert!(place.path().join("results/slides/other/summary.json").exists());

@@ -1,6 +1,6 @@
 //! `docs/reference/instructions.md`: instructions of every shipped model, which a change that costs nothing leaves as
 //! they are. They do not depend on the machine. A step that costs more than in the last row of the performance record
-//! is told.
+//! is reported.
 
 use std::fmt::Write;
 use std::path::Path;

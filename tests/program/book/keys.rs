@@ -43,7 +43,7 @@ fn section(name: &str, definition: &Value) -> String {
     text + &examples.map(|example| format!("\nExample: `{example}`\n")).collect::<String>()
 }
 
-/// What may stand as a value, in words.
+/// Possible values, in words.
 fn value(schema: &Value) -> String {
     if let Some(reference) = schema["$ref"].as_str() {
         let name = reference.rsplit('/').next().unwrap();

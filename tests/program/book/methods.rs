@@ -1,4 +1,4 @@
-//! `docs/reference/methods.md`: every bounding method, from what `mbint explain --methods` lists.
+//! `docs/reference/methods.md`: every bounding method, from the list of `mbint explain --methods`.
 
 use serde_json::Value;
 

@@ -1,5 +1,4 @@
-//! What the book shows is so: commands print what pages say, generated pages are current, and the examples can be
-//! assembled.
+//! The book is correct: commands print what pages say, generated pages are current, and the examples can be assembled.
 //!
 //! `MBINT_UPDATE_DOCS=1 cargo test --test program book` writes the pages anew.
 
@@ -49,17 +48,17 @@ fn pages(folder: &Path, into: &mut Vec<PathBuf>) {
     }
 }
 
-/// Figures of pages with commands that are no results: of definitions, of laws, and of other runs, which are said to be
+/// Figures of pages with commands that are no results: of definitions, of laws, and of other runs, which the pages call
 /// others.
 const NO_RESULTS: [(&str, &[&str]); 5] = [
     // Lengths that are mixed up.
     ("guides/check.md", &["150", "150"]),
-    // Of rims, of the number of pairs, and Hertz's duration.
+    // An angle of rims, the number of pairs, and Hertz's duration.
     ("guides/contact.md", &["120°", "400", "144,", "2.94"]),
     // A year, and the remaining angles of a model that `tests/models/controllers.rs` compares with a closed form.
     ("guides/states.md", &["(2009),", "−1.79°", "1.93°", "−3.22°", "2.81°."]),
     ("guides/trajectories.md", &["(2008),"]),
-    // Of an allocation's first lines, and a yield that is asked for.
+    // Figures of an allocation's first lines, and a requested yield.
     ("tolerances.md", &["3293", "99.73"]),
 ];
 

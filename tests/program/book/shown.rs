@@ -2,8 +2,7 @@
 //!
 //! A block `console` has commands, each after `$ `, and their output; a line `…` stands for any lines. Commands run in
 //! a folder of the page, with the repository's `docs` and `models` in it; a block `yaml` that begins with `# NAME.yaml`
-//! is a file there. Numbers are compared with a tolerance, since a page shows what the program computes and not its
-//! last digits.
+//! is a file there. Numbers are compared with a tolerance, since a page shows results and not their last digits.
 
 use std::path::Path;
 use std::process::Command;

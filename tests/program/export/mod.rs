@@ -1,4 +1,4 @@
-//! `mbint export`: what C and units of FMI compute is the nominal motion of `mbint run`.
+//! `mbint export`: C and units of FMI compute the nominal motion of `mbint run`.
 
 use std::fs;
 use std::process::Command;
@@ -56,7 +56,7 @@ fn c_repeats_the_nominal_motion() {
         let found = Command::new(folder.join("motion")).output().unwrap();
         assert!(found.status.success(), "{name}: {}", String::from_utf8_lossy(&found.stderr));
         let found = columns(&String::from_utf8(found.stdout).unwrap());
-        // A scan of the fewest points: only its nominal motion is looked at.
+        // Only the nominal motion of the run is compared.
         place.run(&format!("run {model} --method chebyshev --yes --quiet -o {name}/run"), 0);
         let expected = columns(&fs::read_to_string(folder.join("run/bounds.csv")).unwrap());
         for (output, values) in &found[1..] {
@@ -280,7 +280,7 @@ fn follows_inputs(place: &Place, model: &str) {
     }
 }
 
-/// Parallelograms that become flat: of many, the C lacks what a step takes there, and the command says so.
+/// Parallelograms that become flat: the C omits the steps through singular configurations, and the command reports it.
 #[test]
 fn singular_configurations_are_announced() {
     let place = Place::new();

@@ -172,7 +172,7 @@ simulation: { duration: 1, STEPS, output_step: 0.02 }
     }
 }
 
-/// A mass under a held force moves by its difference equation: from instant to instant by parabolas.
+/// A mass under a force held between samples moves by its difference equation: from instant to instant by parabolas.
 #[test]
 fn a_held_force_moves_a_mass_by_its_difference_equation() {
     let model = "model: own
