@@ -42,7 +42,7 @@ impl Session {
         self.send(json!({ "method": method, "params": params }));
     }
 
-    /// The answer to a request; what the server says by itself before it is skipped.
+    /// Returns the answer to a request; skips messages that the server sends before by itself.
     fn ask(&mut self, method: &str, params: Value) -> Value {
         self.requests += 1;
         let id = self.requests;

@@ -1,5 +1,5 @@
-//! The program as users meet it: its command line, files and messages, what the documents show, and the order of the
-//! source.
+//! The program as users meet it: its command line, files and messages, the contents of the documents, and the order of
+//! the source.
 
 #![allow(clippy::disallowed_methods, reason = "tests compare with the standard library's functions")]
 

@@ -1,4 +1,4 @@
-//! Models that were written for an older version of the language go on as they are; those of a version are never
+//! Models that were written for an older version of the language are accepted as they are; those of a version are never
 //! changed.
 
 use std::fs;

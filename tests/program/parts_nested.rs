@@ -52,8 +52,8 @@ simulation: { duration: 0.3, step: 1e-3, output_step: 0.05 }
 bounds: { chebyshev: { order: 3 } }
 ";
 
-/// A suspension of the plane that uses all that an assembly may say: its own coordinates, directions, and what effects
-/// measure.
+/// A suspension of the plane that uses all features of an assembly: its own coordinates, directions, and quantities
+/// that effects measure.
 const CORNER: &str = r#"
 assemblies:
   corner:
@@ -109,7 +109,7 @@ fn corner(name: &str, at: Planar) -> [String; 5] {
     let turned = |x: f64, y: f64| at.a * Vector2::new(x, y);
     let list = |v: Vector2<f64>| format!("[{}, {}]", v[0], v[1]);
     let place = |x: f64, y: f64| at.g + turned(x, y);
-    // Coordinates of a place in the corner's frame.
+    // Coordinates of a point in the corner's frame.
     let x = |of: &str| format!("(({cos})*({of}.x - ({})) + ({sin})*({of}.y - ({})))", at.g[0], at.g[1]);
     let y = |of: &str| format!("(({s})*(({cos})*({of}.y - ({})) - ({sin})*({of}.x - ({}))))", at.g[1], at.g[0]);
     let vx = |of: &str| format!("(({cos})*{of}.vx + ({sin})*{of}.vy)");
@@ -240,7 +240,7 @@ outputs: {{ {} }}
     same(&bounds(&nested), &bounds(&by_hand));
 }
 
-/// An arm in space, and a body that flies and is held by a spring.
+/// An arm in space, and a body that flies and is tied by a spring.
 const ARM: &str = r#"
 assemblies:
   arm:
@@ -286,7 +286,7 @@ fn arm(name: &str, at: Spatial) -> [String; 5] {
     let s = at.a.determinant().round();
     let signs = Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, s));
     let r = at.a * signs;
-    // Of an axial vector.
+    // For axial vectors.
     let axial = r * Matrix3::from_diagonal(&Vector3::new(s, s, 1.0));
     let list = |v: Vector3<f64>| format!("[{}, {}, {}]", v[0], v[1], v[2]);
     let frame = UnitQuaternion::from_matrix(&r);
@@ -446,7 +446,7 @@ outputs: {{ {} }}
     }
 }
 
-/// What a body does not have as coordinates it has where its instance is.
+/// Coordinates that a body does not have are those of its instance.
 #[test]
 fn bodies_without_some_coordinates_are_where_their_instance_is() {
     let text = format!(
@@ -470,7 +470,7 @@ outputs: {{ y1: one.bob.y, y2: 2 - two.bob.y, x1: one.bob.P.x + 1, x2: two.bob.P
     }
 }
 
-/// All numbers of a place are parameters, in the frame of the instance around it.
+/// All numbers of a placement are parameters, in the frame of the instance around it.
 #[test]
 fn numbers_of_places_are_set_and_have_tolerances() {
     let text = format!(
@@ -550,7 +550,7 @@ fn a_gripper_of_linkages_is_the_gripper() {
     same(&parts, &whole);
 }
 
-/// Legs that differ by their places alone move alike, and start where plane geometry says.
+/// Legs that differ by their placements alone move alike, and start where plane geometry says.
 #[test]
 fn legs_around_a_body_move_alike() {
     let model = Model::from_file(root().join("docs/examples/hexapod.yaml")).unwrap();

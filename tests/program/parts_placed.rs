@@ -159,7 +159,7 @@ outputs: {{ x1: one.fore.x, x2: two.fore.x, y1: one.fore.y, y2: two.fore.y, z1: 
     }
 }
 
-/// Points at the start are those of the instance, up to what the steps miss.
+/// Points at the start are those of the instance, up to the error of the steps.
 #[test]
 fn a_placed_instance_starts_where_its_points_say() {
     let arm = "
@@ -341,7 +341,7 @@ outputs: {{ x1: one.wheel.x, x2: two.wheel.x, y1: one.wheel.y, y2: two.wheel.y, 
     }
 }
 
-/// A motion without weight does not know where it is.
+/// A motion without weight does not depend on its placement.
 #[test]
 fn a_placed_instance_moves_in_its_frame() {
     let arm = ARM

@@ -1,4 +1,4 @@
-//! What the README shows is so.
+//! The README is correct.
 
 use mbint::Model;
 

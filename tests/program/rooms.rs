@@ -25,7 +25,7 @@ const CRATES: [(&str, &[&str]); 13] = [
 /// Lines that a file may have.
 const LONGEST: usize = 400;
 
-/// A module's place: `["robots", "urdf", "read"]`. Its file is `robots/urdf/read.rs` or `robots/urdf/read/mod.rs`.
+/// A module's path: `["robots", "urdf", "read"]`. Its file is `robots/urdf/read.rs` or `robots/urdf/read/mod.rs`.
 type Module = Vec<String>;
 
 /// The source of a package without its unit tests, by module.
@@ -56,7 +56,7 @@ impl Package {
         Self(modules)
     }
 
-    /// What a module names of its own package, as paths from the root.
+    /// Modules of its own package that a module names, as paths from the root.
     fn named(&self, module: &Module) -> Vec<Module> {
         let text: Vec<&str> = self.0[module].lines().map(|line| line.split("//").next().unwrap()).collect();
         let text = text.join("\n");

@@ -1,4 +1,4 @@
-//! `--root`: files that a model names, of a folder beside its own.
+//! `--root`: files that a model names, of a folder next to its own.
 
 use std::fs;
 

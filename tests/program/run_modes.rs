@@ -1,4 +1,4 @@
-//! `mbint run` as JSON, watching its files, and telling where it is.
+//! `mbint run` as JSON, watching its files, and reporting its progress.
 
 use std::fs;
 use std::io::{BufRead, BufReader, Read};

@@ -69,7 +69,7 @@ fn explained(place: &Place, arguments: &str) -> serde_json::Value {
     serde_json::from_str(&json).unwrap()
 }
 
-/// Everything that was compiled: what `explain` tells, but for the model's name.
+/// Everything that was compiled: the output of `explain`, without the model's name.
 fn compiled(mut explanation: serde_json::Value) -> serde_json::Value {
     let report = explanation.as_object_mut().unwrap();
     report.remove("model").unwrap();
@@ -223,7 +223,7 @@ scenes:
     assert_eq!(interval(&further, "mass"), [0.3 + (0.6 - 0.3) / 2.0, 0.3, 0.6]);
     assert_eq!(interval(&further, "l2"), [0.5; 3]);
     assert_eq!(further.simulation.stepping, Stepping::Fixed(1e-4));
-    // A certain value has no deviation; and what the command line sets goes before what a scene does.
+    // A certain value has no deviation; and a setting of the command line precedes that of a scene.
     let certain = format!("{CRANK}{ASKED}scenes: {{ heavy: {{ parameters: {{ mass: 0.5 }} }} }}\n");
     assert_eq!(interval(&scene(&certain, "heavy"), "mass"), [0.5; 3]);
     let set = Override::parse("mass=0.6±0.1").unwrap();
@@ -303,7 +303,7 @@ fn scenes_are_run_each_by_itself_and_shown_side_by_side() {
     let summary = fs::read_to_string(place.path().join("results/door/ideal/summary.json")).unwrap();
     assert!(summary.contains("\"model\": \"door/ideal\"") && !summary.contains("seconds"), "{summary}");
 
-    // The long table says what the wide ones do.
+    // The long table agrees with the wide ones.
     let long = fs::read_to_string(place.path().join("results/door/scenes.csv")).unwrap();
     assert_eq!(long.lines().next(), Some("scene,output,unit,method,t,nominal,lower,upper,error,unresolved"));
     let rows: Vec<Vec<&str>> = long.lines().skip(1).map(|line| line.split(',').collect()).collect();
@@ -335,7 +335,7 @@ fn scenes_are_run_each_by_itself_and_shown_side_by_side() {
         "long.angle.scan rad",
     ];
     assert_eq!(seen.iter().map(String::as_str).collect::<Vec<_>>(), expected);
-    // Only what several scenes have is overlaid; where methods differ, they are named.
+    // Only outputs of several scenes are overlaid; where methods differ, they are named.
     let svg = fs::read_to_string(place.path().join("results/door/angle.svg")).unwrap();
     assert!(["ideal (chebyshev)", "friction (chebyshev)", "long (scan)"].iter().all(|label| svg.contains(label)));
 
@@ -446,7 +446,7 @@ bounds: { scan: { points: 3 } }
     let table = fs::read_to_string(place.path().join("results/rocker/scenes.csv")).unwrap();
     let named: BTreeSet<&str> = table.lines().skip(1).map(|line| line.split(',').next().unwrap()).collect();
     assert_eq!(named.into_iter().collect::<Vec<_>>(), ["also_fine", "fine"]);
-    // Whether they can be assembled is what `check` tells, scene by scene.
+    // `check` reports, scene by scene, whether they can be assembled.
     let (output, errors) = place.run("check rocker.yaml", 2);
     assert_eq!(output.lines().filter(|line| line.starts_with("ok ")).count(), 2, "{output}");
     assert!(errors.starts_with("error[E0901]: rocker.yaml: scene short: "), "{errors}");
@@ -607,7 +607,7 @@ fn the_examples_are_right() {
     }
 }
 
-/// An output that is called like an effect or a joint stays when that is left out.
+/// An output that is called like an effect or a joint stays when the effect or joint is omitted.
 #[test]
 fn what_is_left_out_is_the_effect_and_not_the_output_of_its_name() {
     let text = format!(

@@ -90,12 +90,12 @@ bounds: { chebyshev: { order: 3 } }
     }
 }
 
-/// As an editor reads a file; `None` where it is no YAML that can be JSON.
+/// The file as an editor reads it; `None` if it is no YAML that can be JSON.
 fn as_json(text: &str) -> Option<serde_json::Value> {
     serde_yaml::from_str(text).ok()
 }
 
-/// What the schema refuses, the reader refuses; the list says of which bad models only the reader knows.
+/// The reader refuses everything that the schema refuses; the list has the bad models that only the reader refuses.
 #[test]
 fn only_semantics_is_beyond_the_schema() {
     let validator = validator();
@@ -123,7 +123,7 @@ fn only_semantics_is_beyond_the_schema() {
     assert!(committed == list, "write it anew: MBINT_UPDATE_SCHEMA=1 cargo test --test program schema\n{list}");
 }
 
-/// Every value of every model is replaced by what may be wrong there: where the schema refuses, the reader does.
+/// Every value of every model is replaced by possible mistakes: where the schema refuses, the reader does.
 #[test]
 fn the_schema_refuses_nothing_that_can_be_read() {
     let validator = validator();

@@ -357,7 +357,7 @@ fn the_disk_that_a_store_takes_is_reported_before() {
         let words = reported.strip_prefix("thrown: no parts in kept (0 B); this run's simulations take ").unwrap();
         let (number, unit) = words.strip_suffix(" on the disk at most").unwrap().split_once(' ').unwrap();
         assert_eq!(unit, "KiB", "{reported}");
-        // A part has a hundred bytes or two beside its values.
+        // A part has a hundred bytes or two in addition to its values.
         let at_most = 1024.0 * number.parse::<f64>().unwrap();
         let lengths = tree(&place.path().join("kept/parts"));
         let taken: usize = lengths.iter().map(|(_, bytes)| bytes.len().saturating_sub(1000)).sum();

@@ -5,8 +5,7 @@ use std::process::{Command, Stdio};
 
 use super::place::Place;
 
-/// What a shell prints for a script; `None`, and a line that says so, where it is not installed. The gate has all of
-/// them.
+/// Output of a shell for a script; `None`, and a line that says so, if it is not installed. The gate has all of them.
 fn shell(name: &str, arguments: &[&str], script: &str) -> Option<String> {
     if Command::new(name).arg("--version").stdout(Stdio::null()).stderr(Stdio::null()).status().is_err() {
         assert!(std::env::var_os("CI").is_none(), "{name} is not installed");

@@ -70,7 +70,7 @@ bounds: { chebyshev: { order: 3 } }
     }
     let together = 1e-6 * summary["statistics"]["together"]["ppm"].as_f64().unwrap();
     assert!((together / tail(2.0) - 1.0).abs() < 0.02, "{together}");
-    // The plot has the quantiles beside the bounds, and so has the report.
+    // The plot has the quantiles next to the bounds, and so has the report.
     for file in ["y.svg", "report.html"] {
         let text = fs::read_to_string(place.path().join("out").join(file)).unwrap();
         assert!(text.contains("quantiles, 0.135 % to 99.865 %"), "{file}");

@@ -1,4 +1,4 @@
-//! What `mbint check` counts, on mechanisms of which textbooks give the mobility.
+//! Counts of `mbint check`, on mechanisms whose mobility is in textbooks.
 
 use std::f64::consts::TAU;
 use std::fs;
@@ -9,7 +9,7 @@ use super::place::Place;
 
 const END: &str = "simulation: { duration: 0.1 }\nbounds: { scan: { points: 2 } }\n";
 
-/// What check says of a model, as JSON and as text.
+/// Report of `check` on a model, as JSON and as text.
 #[track_caller]
 fn checked(model: &str) -> (Value, String) {
     let place = Place::new();
@@ -24,7 +24,7 @@ fn mobility(found: &Value) -> [i64; 3] {
     ["count", "mobility", "over_constrained"].map(|key| found["mobility"][key].as_i64().unwrap())
 }
 
-/// Of a model that comes with mbint.
+/// Report of `check` on a model that comes with mbint.
 #[track_caller]
 fn shipped(name: &str) -> Value {
     let path = format!("{}/models/{name}.yaml", env!("CARGO_MANIFEST_DIR"));

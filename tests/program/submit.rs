@@ -1,4 +1,4 @@
-//! `mbint submit --slurm`, with a program in the place of `sbatch` that runs its last argument. Under a real Slurm:
+//! `mbint submit --slurm`, with a program in place of `sbatch` that runs its last argument. Under a real Slurm:
 //! `tests/cluster/slurm.sh`.
 
 #![cfg(unix)]
@@ -44,7 +44,7 @@ fn folders_may_have_names_that_a_shell_reads() {
         let log = format!("--output={}/logs/round-1-merge-%j.log", study.replace('%', "%%"));
         assert!(asked.lines().any(|line| line == log), "{log}: {asked}");
         assert!(!place.path().join("made").exists());
-        // What Slurm reads of a script has no path in it.
+        // The directives for Slurm in a script have no path.
         for script in ["round-1-array.sh", "round-1-merge.sh"] {
             let text = fs::read_to_string(place.path().join(name).join(script)).unwrap();
             let directives: Vec<&str> = text.lines().filter(|line| line.starts_with("#SBATCH")).collect();

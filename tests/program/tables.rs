@@ -1,5 +1,5 @@
-//! Tables of sweeps, allocations and statistics as they were when they were last looked at: `snapshots/tables/`, in
-//! four digits, without errors.
+//! Tables of sweeps, allocations and statistics as they were last reviewed: `snapshots/tables/`, in four digits,
+//! without errors.
 //!
 //! `INSTA_UPDATE=always cargo test --test program tables` takes changes over.
 
@@ -11,7 +11,7 @@ use super::place::Place;
 /// Smaller values are rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// A table in four digits; columns of errors, which search by samples, left out.
+/// A table in four digits, without columns of errors, which search by samples.
 fn rounded(table: &str) -> String {
     let mut lines = table.lines().map(|line| line.split(',').collect::<Vec<_>>());
     let header = lines.next().unwrap();

@@ -67,7 +67,7 @@ fn parameters_take_every_form() {
         let place = format!("{{ value: 0.5 kg, tolerance: {form} }}");
         assert_near(interval(&rod(&place), "m"), expected, &place);
     }
-    // Numbers are in the unit of the key where there is one.
+    // Numbers are in the unit of the key if it has one.
     let place = "{ value: 500, unit: g, tolerance: +10 -20 }";
     assert_near(interval(&rod(place), "m"), [0.48, 0.51], place);
 }
@@ -75,7 +75,7 @@ fn parameters_take_every_form() {
 #[test]
 fn the_command_line_takes_every_form() {
     for (form, expected) in WHOLE.into_iter().chain(ALONE) {
-        // A whole number replaces what the file says, a deviation alone is of the file's value.
+        // A whole number replaces the number in the file, a deviation alone is of the file's value.
         let file = if WHOLE.contains(&(form, expected)) { "3 kg" } else { "0.5 kg" };
         let model = rod(file).with("m", form).unwrap_or_else(|error| panic!("{form}: {error}"));
         assert_near(interval(&model, "m"), expected, form);

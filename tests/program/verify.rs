@@ -1,4 +1,4 @@
-//! `mbint verify --junit`: what a verification found, as tests.
+//! `mbint verify --junit`: findings of a verification, as tests.
 
 use std::fs;
 

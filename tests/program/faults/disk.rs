@@ -22,7 +22,7 @@ fn with_mounts(place: &Place, script: &str) -> (i32, String) {
 fn a_full_disk_is_one_message_and_the_older_results_stay() {
     let place = Place::new();
     place.model("crank");
-    // The table fits; with everything beside it the disk is full.
+    // The table fits; with all other files the disk is full.
     let script = "mkdir small/out && echo old > small/out/bounds.csv && head -c 45000 /dev/zero > small/rest; \
                   \"$MBINT\" run -q crank.yaml -o small/out; status=$?; ls -A small/out > left; \
                   cat small/out/bounds.csv > kept; exit $status";

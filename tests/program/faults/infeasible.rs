@@ -62,8 +62,7 @@ fn a_coupler_that_is_too_long_is_reported() {
     let message = run(&four_bar("value: 0.71", FURTHER), false).unwrap_err();
     println!("{message}");
     assert!(message.contains("cannot be closed"), "{message}");
-    // The coupler spans from the crank to the rocker; what cannot be closed is one of the loop's joints, by its part of
-    // 190 mm.
+    // The coupler spans from the crank to the rocker; one of the loop's joints cannot be closed, by its part of 190 mm.
     let joint = ["`A`", "`B`", "`C`", "`D`"].iter().any(|joint| message.contains(joint));
     assert!(joint, "{message}");
     let residual = message.split(" mm remain in").next().and_then(|rest| rest.rsplit(' ').next()).unwrap();
@@ -72,7 +71,7 @@ fn a_coupler_that_is_too_long_is_reported() {
     assert!(message.ends_with("; check lengths, initial positions and joint kinds"), "{message}");
 }
 
-/// Found by fuzzing: what a beam starts with are rows behind the constraints', and had no names.
+/// Found by fuzzing: the start values of a beam are rows behind the constraints', and had no names.
 #[test]
 fn lengths_beyond_all_numbers_are_reported() {
     let text = std::fs::read_to_string("models/slider_crank_flexible.yaml").unwrap();

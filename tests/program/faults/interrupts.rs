@@ -27,8 +27,8 @@ fn begin(place: &Place, arguments: &str) -> Child {
     place.command(arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
 }
 
-/// Sends a signal when standard error tells of this stage, and awaits the end, which would come minutes later. The
-/// status, and what standard error has told.
+/// Sends a signal when standard error reports this stage, and awaits the end, which would come minutes later. Returns
+/// the status, and the text of standard error.
 pub(super) fn interrupted(place: &Place, arguments: &str, stage: &str, name: &str) -> (Option<i32>, String) {
     let mut run = begin(place, arguments);
     let mut told = String::new();
@@ -117,7 +117,7 @@ fn quantiles(place: &Place) {
     fs::write(place.path().join("spring.yaml"), text).unwrap();
 }
 
-/// Statistics are a stage of their own after the bounds, which are kept.
+/// Statistics are a stage of their own after the bounds, which are written.
 #[test]
 fn statistics_end_at_a_sigterm() {
     let place = Place::new();
@@ -130,7 +130,8 @@ fn statistics_end_at_a_sigterm() {
     assert!(!table.contains("NaN"), "bounds are done");
 }
 
-/// While another run writes into the folder, this is said; what there is then stands beside.
+/// While another run writes into the folder, this is reported; after an interruption results are written into a folder
+/// next to it.
 #[test]
 fn waiting_for_a_folder_ends_at_a_ctrl_c() {
     let place = Place::new();

@@ -1,4 +1,4 @@
-//! Very many questions: memory grows with their number, and what would not find room is refused before it begins.
+//! Very many questions: memory grows with their number, and a run that would not find room is refused before it begins.
 
 #![cfg(unix)]
 
@@ -21,8 +21,8 @@ fn pushed(place: &Place, asked: &str, simulation: &str) {
     fs::write(place.path().join("pushed.yaml"), text).unwrap();
 }
 
-/// A run whose data may take `kilobytes` kilobytes. (A limit of addresses would count the program's size and what the
-/// allocator only reserves for a thread: 64 MB each, at random.)
+/// A run whose data may take `kilobytes` kilobytes. (A limit of addresses would count the program's size and the
+/// reserve of the allocator for a thread: 64 MB each, at random.)
 fn limited(place: &Place, kilobytes: u64) -> Output {
     let run =
         format!("ulimit -d {kilobytes} && exec \"$MBINT\" run -q --yes --no-report --threads 1 pushed.yaml -o out");

@@ -1,5 +1,5 @@
 //! Faults around a run, and uncertainty that a mechanism does not bear: no half-written file is left, finished results
-//! are kept, and reports are true.
+//! stay, and reports are true.
 
 mod disk;
 mod folder;

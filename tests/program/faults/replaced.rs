@@ -60,7 +60,7 @@ fn killed(times: u32) -> (u32, u32) {
     for kill in 0..times {
         let mut command = place.command(commands[(kill as usize + 1) % 2]);
         let mut run = command.args(["-o", "out"]).stderr(Stdio::null()).spawn().unwrap();
-        // Of three kills two are aimed at the replacement itself, the others at the files that are written before.
+        // Two of three kills are aimed at the replacement itself, the others at the files that are written before.
         let (has_begun, wait): (&dyn Fn() -> bool, u32) =
             if kill % 3 == 0 { (&is_written, kill * 50) } else { (&is_replaced, kill * 37 % 100 * 40) };
         while run.try_wait().unwrap().is_none() && !has_begun() {}
@@ -153,7 +153,7 @@ fn only_files_that_a_run_has_written_are_removed() {
     place.run("run -q pushed.yaml -o out", 0);
     assert!(mine.iter().all(|name| out.join(name).exists()), "{:?}", place.files("out"));
     assert_eq!(fs::read_to_string(out.join("scenes.json")).unwrap(), list);
-    // Of two plots that the next run does not write, one was changed by hand.
+    // The next run does not write two plots, one of which was changed by hand.
     fs::write(out.join("o1.svg"), "mine").unwrap();
     pushed(&place, 1);
     place.run("run -q pushed.yaml -o out", 0);
@@ -162,7 +162,7 @@ fn only_files_that_a_run_has_written_are_removed() {
     assert!(mine.iter().all(|name| out.join(name).exists()), "{files:?}");
 }
 
-/// A pipe in the place of a summary has no end.
+/// A pipe in place of a summary has no end.
 #[test]
 fn a_pipe_in_the_way_of_results_is_not_read() {
     let place = Place::new();

@@ -45,7 +45,7 @@ fn long_chains_swing_and_keep_their_energy() {
         let of = |output: usize| &bounds.outputs[output].nominal;
         let moved = (of(0)[1] - of(0)[0]).abs();
         let lost = (of(1)[1] - of(1)[0]).abs();
-        // What the whole chain would give by falling freely for as long.
+        // Energy of the whole chain after a free fall of the same time.
         let turnover = 0.5 * bodies as f64 * 0.1 * (9.81 * duration).powi(2);
         println!("{bodies} bodies: {lost:.2e} of {turnover:.2e} J, tip moved {moved:.2e} m");
         assert!(lost < 2e-2 * turnover && of(3).iter().all(|gap| gap.abs() < 1e-10), "{lost:e} of {turnover:e} J");

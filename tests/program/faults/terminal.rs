@@ -1,11 +1,11 @@
-//! Names from files that hold what a terminal obeys.
+//! Names from files that contain control sequences of a terminal.
 
 use std::fs;
 
 use crate::place::Place;
 
-/// What a name may hold: set the title, clear the screen, colours, bell, return, the control characters of one byte and
-/// of two, marks that reverse the line.
+/// Control sequences in a name: set the title, clear the screen, colours, bell, return, the control characters of one
+/// byte and of two, marks that reverse the line.
 const HOSTILE: &str = "\\e]0;PWNED\\a\\e[2J\\e[31mx\\r\\x9b5m\\u202eabc\\u2066\\u200f\\u2028";
 
 /// Everything that reached the terminal holds no control character but line ends and colours.

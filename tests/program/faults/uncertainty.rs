@@ -53,7 +53,7 @@ fn intervals_without_width_are_the_nominal_motion() {
     }
 }
 
-/// An interval without width beside one with some changes nothing.
+/// An interval without width next to a proper one changes nothing.
 #[test]
 fn an_interval_without_width_is_a_number() {
     let request = "chebyshev: { order: 5 }, taylor: { order: 3 }, scan: { points: 5 }";

@@ -217,7 +217,7 @@ bounds: {{ scan: {{ points: 5 }} }}
     }
 }
 
-/// Messages with their places: names, types, interfaces and units are those of the description.
+/// Messages with their locations: names, types, interfaces and units are those of the description.
 #[test]
 fn wrong_names_are_answered_with_near_ones() {
     let model = "parameters: { kk: ± 5%, k: 200 kg, x: 3 m, unused: 1 }

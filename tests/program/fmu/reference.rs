@@ -1,5 +1,5 @@
-//! Units with the equations of the Reference FMUs: bounds hold what dense sampling of the equations shows, which are
-//! solved here: by closed forms, Euler's method as the units have it, or a fine method of Runge and Kutta.
+//! Units with the equations of the Reference FMUs: bounds contain dense samples of the equations, which are solved
+//! here: by closed forms, Euler's method as the units have it, or a fine method of Runge and Kutta.
 
 use std::fs;
 
@@ -264,7 +264,7 @@ simulation: {{ duration: 10, output_step: 0.5 }}
     }
 }
 
-/// What goes in comes out, in each type that is one number; texts are not asked for.
+/// Inputs come out as outputs, in each type that is one number; texts are not requested.
 #[test]
 fn inputs_of_all_types_are_outputs() {
     let kinds = ["Int8", "UInt8", "Int16", "UInt16", "Int32", "UInt32", "Int64", "UInt64", "Enumeration"];

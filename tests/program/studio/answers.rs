@@ -48,7 +48,7 @@ fn a_slider_shows_the_sample_itself() {
     assert_eq!(numbers(&found["times"]), column(3));
     assert_eq!(numbers(&found["outputs"][0]["values"]), column(4));
     assert_eq!(numbers(&found["outputs"][1]["values"]), column(5));
-    // The mechanism's motion at the sample ends where the crank's angle does, as far as numbers of 32 bits tell.
+    // The mechanism's motion at the sample ends where the crank's angle does, to the accuracy of 32 bits.
     let motion = session.post("motion", &json!({ "number": number, "values": values })).json();
     assert_eq!(motion["rows"], 21);
     for (values, why) in
@@ -141,7 +141,7 @@ fn loops_in_space_stay_closed() {
     }
 }
 
-/// A model that asks a program does not start it by being looked at.
+/// A model that asks a program does not start it when it is opened.
 #[cfg(unix)]
 #[test]
 fn a_program_is_started_when_it_is_allowed() {

@@ -61,7 +61,7 @@ impl Answer {
 }
 
 impl Session {
-    /// Of a model's file in a folder.
+    /// Starts the studio with a model's file in a folder.
     fn new(place: &Place, model: &str) -> Self {
         let mut command = place.command(&format!("studio {model} --no-open"));
         let mut process = command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();

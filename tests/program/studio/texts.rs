@@ -16,7 +16,7 @@ fn change(session: &Session, path: &Path, text: &str) {
     assert_eq!(session.post("text", &json!({ "path": path, "text": text })).status, 200);
 }
 
-/// Errors have their places and fixes, and the page goes on.
+/// Errors have their locations and fixes, and the page continues.
 #[test]
 fn errors_are_told_and_a_text_that_is_right_again_is_bounded() {
     let (place, mut session) = session(CRANK);
