@@ -1,4 +1,4 @@
-"""The process that stands for a Python function: it passes what mbint asks to the Python that has the function.
+"""The process in place of a Python function: it passes the questions of mbint to the process that has the function.
 
 Started as ``python _answering.py ADDRESS``; the key is in the variable ``MBINT_ANSWERING_KEY``. It imports nothing but the standard
 library, so that it starts quickly.
@@ -12,7 +12,7 @@ from multiprocessing.connection import Client
 
 
 def main() -> None:
-    """Passes lines there, and answers back, until the input ends."""
+    """Passes lines to the connection and its answers back, until the input ends."""
     with Client(sys.argv[1], authkey=bytes.fromhex(os.environ["MBINT_ANSWERING_KEY"])) as connection:
         for line in sys.stdin.buffer:
             connection.send_bytes(line)

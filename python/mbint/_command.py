@@ -11,14 +11,14 @@ import sysconfig
 from collections.abc import Sequence
 from pathlib import Path
 
-#: Exit status where a number is not to be relied on, and where a requirement is not met (see docs/reference/exit-codes.md).
+#: Exit status if a number is unreliable, and if a requirement is not met (see docs/reference/exit-codes.md).
 UNRESOLVED = 3
 NOT_MET = 4
 
 #: Exit statuses of ``mbint run`` after which there are results.
 WITH_RESULTS = frozenset({0, UNRESOLVED, NOT_MET})
 
-#: Exit status of ``mbint merge`` where another round of shards is needed.
+#: Exit status of ``mbint merge`` if another round of shards is needed.
 ANOTHER_ROUND = 75
 
 
@@ -27,8 +27,8 @@ class MbintError(RuntimeError):
 
     Attributes:
         status: its exit status.
-        message: what it printed, with the places in the model.
-        code: kind of the first mistake, e.g. ``E0401``, of which ``mbint explain`` has a page; None where it has none.
+        message: its messages, with the locations in the model.
+        code: kind of the first mistake, e.g. ``E0401``, whose page ``mbint explain`` shows; None if it has none.
     """
 
     def __init__(self, status: int, message: str) -> None:
@@ -42,10 +42,10 @@ class MbintError(RuntimeError):
 def command() -> str:
     """Path of the command.
 
-    It is looked for in the variable ``MBINT``, among the scripts of this Python, and on the PATH, in this order.
+    Searched for in the variable ``MBINT``, among the scripts of this Python, and on the PATH, in this order.
 
     Raises:
-        FileNotFoundError: there is none.
+        FileNotFoundError: the command is in none of these.
     """
     if chosen := os.environ.get("MBINT"):
         if not (os.path.isfile(chosen) or shutil.which(chosen)):

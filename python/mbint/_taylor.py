@@ -1,4 +1,4 @@
-"""Taylor models in fixed point: polynomials of whole multiples of 2**-SCALE, with a radius that holds all else.
+"""Taylor models in fixed point: polynomials of whole multiples of 2**-SCALE, with a radius for all else.
 
 Products of Python's whole numbers are exact, so that the only errors are the ones that are rounded away on purpose. Nothing of
 the command's arithmetic is used.
@@ -10,16 +10,16 @@ from functools import cached_property
 from itertools import product
 from math import comb, isqrt
 
-#: Binary places behind the point.
+#: Binary digits after the point.
 SCALE = 112
 ONE = 1 << SCALE
 
-#: Further places of series.
+#: Further binary digits of series.
 GUARD = 64
 
 
 class Unknown(ArithmeticError):
-    """A number of which nothing is known."""
+    """Nothing is known of a number."""
 
 
 def up(value: int) -> int:
@@ -28,7 +28,7 @@ def up(value: int) -> int:
 
 
 def fixed(value: float) -> tuple[int, int]:
-    """A float, and how far it is from that."""
+    """A float in fixed point, rounded down, and a bound of the rounding error."""
     numerator, denominator = value.as_integer_ratio()
     exact = numerator << SCALE
     return exact // denominator, int(exact % denominator != 0)
@@ -81,7 +81,7 @@ class Space:
 
     @cached_property
     def targets(self) -> list[list[int]]:
-        """Of each monomial, its products with the first ones."""
+        """Products of each monomial with the first ones."""
         rows = []
         for i, powers in enumerate(self.powers):
             others = (other for j, other in enumerate(self.powers) if self.degrees[i] + self.degrees[j] <= self.order)
@@ -106,14 +106,14 @@ class Space:
         return model
 
     def polynomial(self, coefficients: list[float]) -> Model:
-        """Of floats; missing ones are zero."""
+        """Polynomial with these coefficients; missing ones are zero."""
         both = [fixed(c) for c in coefficients]
         values = [value for value, _ in both]
         return Model(self, values + [0] * (self.count - len(values)), sum(error for _, error in both))
 
 
 class Model:
-    """A polynomial and a radius: what it stands for is no further from the polynomial."""
+    """A polynomial and a radius, the largest distance of the represented function from the polynomial."""
 
     __slots__ = ("c", "radius", "space")
 
@@ -179,7 +179,7 @@ class Model:
         return abs(self.c[0]) - sum(map(abs, self.c[1:])) - self.radius
 
     def sign(self) -> int:
-        """Of all values, zero as a negative one."""
+        """Sign of all values, where zero counts as negative."""
         rest = sum(map(abs, self.c[1:])) + self.radius
         if self.c[0] - rest > 0:
             return 1
@@ -188,7 +188,7 @@ class Model:
         raise Unknown
 
     def absolute(self) -> Model:
-        """The absolute value; where the sign changes over the box, the radius has how far the other side is beyond."""
+        """The absolute value; where the sign changes over the box, the radius covers the reflected values of the other sign."""
         beyond = sum(map(abs, self.c[1:])) + self.radius - abs(self.c[0])
         own = self if self.c[0] >= 0 else -self
         return own if beyond <= 0 else own.with_radius(own.radius + 2 * beyond)
@@ -283,7 +283,7 @@ _PAIRS: dict[tuple[int, int], list[list[tuple[int, int]]]] = {}
 
 
 def _pairs(space: Space) -> list[list[tuple[int, int]]]:
-    """Of each monomial, the pairs of others of which it is the product, but for those with a constant as first and itself."""
+    """Pairs of monomials by their product, but for those with the constant first."""
     key = (space.variables, space.order)
     if key not in _PAIRS:
         pairs: list[list[tuple[int, int]]] = [[] for _ in range(space.count)]

@@ -1,7 +1,7 @@
-"""A second checker of what ``mbint run --certify`` has proven, in Python's whole numbers.
+"""A second checker of the proofs of ``mbint run --certify``, in Python's whole numbers.
 
 It reads ``certificate.jsonl`` and computes the proof again: nothing of the file but its equations is trusted, and nothing of the
-command's arithmetic is used. ``docs/reference/certificate.md`` says what is in the file, ``docs/theory/certified.md`` why the
+command's arithmetic is used. ``docs/reference/certificate.md`` describes the file, ``docs/theory/certified.md`` says why the
 proof holds; symbols here are those of that page.
 
     >>> from mbint import certificate
@@ -125,9 +125,9 @@ def _read(lines: Iterable[str]) -> tuple[list[list[str]], list[_System]]:
 
 
 def check(path: str | PathLike[str], *, model: str | PathLike[str] | None = None) -> Checked:
-    """Check a certificate, and that it is of a model's file where one is named.
+    """Checks a certificate and, if a model's file is named, that it is of this file.
 
-    Whether the equations are those that the command finds for the model, only ``mbint verify-certificate FILE MODEL`` tells.
+    Only ``mbint verify-certificate FILE MODEL`` checks that the equations are those of the model.
 
     Raises:
         Refused: something does not follow.
@@ -471,7 +471,7 @@ class _Checker:
                 raise Refused(f"its cells end at {time} s, and bounds are stated at {instant} s")
 
     def _start(self) -> tuple[list[list[Model]], list[int]]:
-        """Polynomials of positions and velocities at the start, and how far the motion is from them."""
+        """Polynomials of positions and velocities at the start, and the distance of the motion from them."""
         system, space, n = self.system, self.box, self.system.n
         if [len(own) for own in self.piece.start] != [n, n]:
             raise Refused("polynomials of the start are not as many as coordinates")
@@ -511,7 +511,7 @@ class _Checker:
                 continue
             try:
                 if state is None:
-                    # Enough for what depends on neither accelerations nor multipliers.
+                    # Enough for outputs that depend on neither accelerations nor multipliers.
                     missing: State = {**passed.at(time), "w": [], "lambda": []}
                     (output,) = _evaluate(system, [node], space, now, parameters, missing, derive=False)
                 else:
@@ -582,7 +582,7 @@ class _Frame:
         return _apply(_sizes(self.directions), self.radii)
 
     def turned(self) -> tuple[_Frame, list[int]]:
-        """B P R^-1 of B P = Q R at the centre, for columns in the order of what they contribute, and what that misses."""
+        """B P R^-1 of B P = Q R at the centre, for columns in the order of their contributions, and its error."""
         space, size = self.directions[0][0].space, len(self.radii)
         centre = list(zip(*_centre(self.directions)))
         order = sorted(range(size), key=lambda column: -self.radii[column] * math.hypot(*centre[column]))
@@ -681,7 +681,7 @@ class _Cell:
         for c, (power, *rest) in zip(of.c, of.space.powers):
             if c:
                 out[box.index[tuple(rest)]] += c * powers[power] >> SCALE
-                # A power has at most so many units of error.
+                # The error of a power in units is at most its exponent.
                 lost += up(abs(c) * power) + 1
         return Model(box, out, of.radius + lost)
 
@@ -740,7 +740,7 @@ class _Cell:
         self._flow(slopes, first_order, duration)
 
     def _flow(self, slopes: Matrix, first_order: Bounds, duration: int) -> None:
-        """Some polynomials near the transition matrix, and how far it is from them."""
+        """Some polynomials near the transition matrix, and its distance from them."""
         n, space = self.n, self.checker.coarse
         box = self.checker.coarse_box
         unit = [[box.one() if i == j else box.zero() for j in range(2 * n)] for i in range(2 * n)]

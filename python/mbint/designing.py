@@ -25,8 +25,8 @@ class Design:
     Attributes:
         points: a row for each point (``model``, ``without tolerances``, ``optimum``, …): the values of free parameters, ``nominal``, ``worst``, ``error``, ``feasible``, in SI.
         feasible: whether all requirements hold at the optimum; if not, it is the nearest point.
-        front: cost against margin, a row for each margin: ``margin``, ``error``, ``cost``, the values of free parameters, ``NAME.above`` and ``NAME.below`` of each tolerance, in SI; empty where tolerances have no cost.
-        overlay: the best values with their tolerances, for the argument ``set`` of other functions; where the cost is the objective, the other tolerances too.
+        front: cost against margin, a row for each margin: ``margin``, ``error``, ``cost``, the values of free parameters, ``NAME.above`` and ``NAME.below`` of each tolerance, in SI; empty if tolerances have no cost.
+        overlay: the best values with their tolerances, for the argument ``set`` of other functions; if the cost is the objective, the other tolerances too.
         result: ``design.json``: verdicts, profiles, tolerances by their cost.
     """
 
@@ -50,11 +50,11 @@ def design(
 
     Args:
         model: path of a model file, or its content as a dictionary.
-        share: share of the production that counts; every case where absent.
+        share: share of the production that counts; every case if absent.
         set: parameters that differ from the file's.
         scene: scene of the model.
         threads: number of threads; results do not depend on it.
-        costly: whether to run what takes more than about a minute.
+        costly: whether to run if it takes more than about a minute.
 
     Raises:
         MbintError: the model has errors, or no ``design``.

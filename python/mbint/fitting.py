@@ -56,7 +56,7 @@ def fit(
         set: parameters that differ from the file's.
         scene: scene of the model.
         threads: number of threads; results do not depend on it.
-        costly: whether to run what takes more than about a minute.
+        costly: whether to run if it takes more than about a minute.
 
     Raises:
         MbintError: the model or the data have errors.

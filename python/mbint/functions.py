@@ -1,4 +1,4 @@
-"""Bounds of any Python function: it answers in this Python, and mbint asks."""
+"""Bounds of any Python function: it runs in this Python, and answers the questions of mbint."""
 
 from __future__ import annotations
 
@@ -43,18 +43,18 @@ def bounds(
     more: Mapping[str, Any] | None = None,
     **options: Any,
 ) -> Study:
-    """Bounds what a function returns over intervals of its arguments.
+    """Bounds the values of a function over intervals of its arguments.
 
     Args:
-        function: gets the parameters by name, as numbers. It returns a number or, with ``times``, one for each time; of several outputs a
+        function: gets the parameters by name, as numbers. It returns a number or, with ``times``, one for each time; for several outputs a
             dictionary, a table of pandas, a dataset of xarray, or a sequence in their order.
         parameters: each argument's interval ``(0.14, 0.16)``, or a text with unit and tolerance: ``"150 mm ± 1%"``; a single number is
             constant. The function gets values in SI units.
-        outputs: names of what the function returns; a dictionary gives units, ``{"x": "mm"}``.
+        outputs: names of the returned values; a dictionary gives units, ``{"x": "mm"}``.
         times: times of the rows, s, from 0 on with equal distances; without them the function returns one number an output.
         vectorised: whether the function takes arrays, one value a point, and returns arrays with the points as their first axis.
         executor: runs the function, point by point, such as a ``ProcessPoolExecutor``; without one it runs here.
-        tolerance: error allowed of the bounds, relative to how far an output ranges; without it, Chebyshev of order 5.
+        tolerance: allowed error of the bounds, relative to the range of an output; without it, Chebyshev of order 5.
         more: further sections of the model: ``requirements``, ``statistics``, reduced outputs under ``outputs``, …
         **options: those of :class:`Study`.
 
@@ -157,7 +157,7 @@ class _Answers:
             return _failed(error)
 
     def _columns(self, found: Any) -> dict[str, Any]:
-        """What a function returned, by output."""
+        """Values that a function returned, by output."""
         if hasattr(found, "keys"):  # a dictionary, a table or a dataset
             missing = [name for name in self.outputs if name not in found]
             if missing:

@@ -1,4 +1,4 @@
-"""Further questions of a model: is it right, other values, tolerances that suffice, what accuracy costs, have bounds moved?"""
+"""Further questions about a model: is it right, other values, tolerances that suffice, what accuracy costs, have bounds moved?"""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from .study import Study
 if TYPE_CHECKING:
     from .study import Model, Value
 
-#: Values of a swept parameter: from, to, and how many, perhaps with what stands behind each, as ``"mm ± 1%"``.
+#: Values of a swept parameter: from, to, and their number, perhaps with a text behind each, as ``"mm ± 1%"``.
 Values = tuple[float, float, int] | tuple[float, float, int, str]
 
 
@@ -66,12 +66,12 @@ def sweep(
 
     Args:
         model: path of a model file, or its content as a dictionary.
-        values: for each parameter where it begins and ends and how many values it takes, as ``{"l1": (100, 200, 11, "mm ± 1%")}``; without a
+        values: for each parameter its first and last value and the number of values, as ``{"l1": (100, 200, 11, "mm ± 1%")}``; without a
             text behind them, numbers are in SI units and have no tolerance.
         set: parameters that differ from the file's.
         scene: scene of the model.
         threads: number of threads.
-        costly: whether to run what takes more than about a minute for one value.
+        costly: whether to run if one value takes more than about a minute.
 
     Returns:
         ``sweep.csv``: a row for each combination of values.
@@ -114,11 +114,11 @@ def allocate(
     Args:
         model: path of a model file, or its content as a dictionary.
         share: share of the production that meets all requirements; in every case if absent.
-        widest: how many times the model's tolerances are looked at, at most.
+        widest: widest tolerances of the search, as multiples of the model's.
         set: parameters that differ from the file's.
         scene: scene of the model.
         threads: number of threads.
-        costly: whether to run what takes more than about a minute.
+        costly: whether to run if it takes more than about a minute.
 
     Raises:
         MbintError: the model has errors, no requirement, or no tolerance that may change.
@@ -147,12 +147,12 @@ def cost(
     scene: str | None = None,
     threads: int | None = None,
 ) -> pd.DataFrame:
-    """What accuracy costs in time: every method with many settings, each with its error against a reference.
+    """Cost of accuracy in time: every method with many settings, each with its error against a reference.
 
     Args:
         model: path of a model file, or its content as a dictionary.
-        tolerance: error that is wanted, relative to how far each output ranges.
-        budget: seconds that it may take, about.
+        tolerance: wanted error, relative to the range of each output.
+        budget: approximate limit of the duration, s.
         set: parameters that differ from the file's.
         scene: scene of the model.
         threads: number of threads.
@@ -175,7 +175,7 @@ def snapshot(model: Model, folder: str | Path, *, check: bool = False, scene: st
 
     Args:
         model: path of a model file, or its content as a dictionary.
-        folder: where the snapshots are.
+        folder: folder of the snapshots.
         check: whether to compare with the record, and write nothing.
         scene: scene of the model; by default all.
 

@@ -22,8 +22,8 @@ class Result:
     """Bounds over time of one model or scene.
 
     Args:
-        folder: where ``mbint run`` wrote them.
-        owner: what removes the folder when it is gone itself: it stays as long as the result does.
+        folder: folder into which ``mbint run`` wrote them.
+        owner: object that removes the folder at its own end: it lives as long as the result does.
     """
 
     def __init__(self, folder: str | Path, owner: object = None) -> None:
@@ -35,7 +35,7 @@ class Result:
 
     @cached_property
     def summary(self) -> dict[str, Any]:
-        """``summary.json``: what was run, and how far it can be relied on. SI units."""
+        """``summary.json``: the run and its reliability. SI units."""
         with open(self.folder / "summary.json", encoding="utf-8") as file:
             summary: dict[str, Any] = json.load(file)
         return summary
@@ -49,7 +49,7 @@ class Result:
 
     @cached_property
     def units(self) -> dict[str, str]:
-        """Unit of each output; empty where there is none."""
+        """Unit of each output; empty if it has none."""
         return {column["output"]: column["unit"] for column in self.columns if column["quantity"] == "nominal"}
 
     @cached_property
@@ -116,7 +116,7 @@ class Result:
 
     @cached_property
     def unreliable(self) -> xr.Dataset:
-        """Where the stated error of a band is not to be relied on: a variable for each method over (time, output)."""
+        """Whether the stated error of a band is unreliable: a variable for each method over (time, output)."""
         named = [set(cell.split()) for cell in self.frame["unresolved"]] if "unresolved" in self.frame else []
         flags = {}
         for method in self.bounds:
@@ -133,7 +133,7 @@ class Result:
         return xr.DataArray(values, coords=coords, dims=dims, name=name, attrs=self._attributes())
 
     def _attributes(self) -> dict[str, Any]:
-        """Where the numbers come from; the unit where all outputs have the same."""
+        """Origin of the numbers; the unit if all outputs have the same."""
         attributes = {"model": self.summary["model"], "mbint": self.summary["mbint"]}
         units = set(self.units.values())
         return attributes | ({"units": units.pop()} if len(units) == 1 else {})

@@ -46,7 +46,7 @@ def sample(
         scene: scene of the model to sample.
         threads: number of threads; results do not depend on it.
         executor: any executor of :mod:`concurrent.futures` runs the shards.
-        store: folder for what is simulated, where an interrupted call goes on.
+        store: folder for the simulations, from which an interrupted call continues.
 
     Returns:
         ``values`` over (sample, time, output), NaN where a sample cannot be assembled or from where it stopped, and ``parameters`` over

@@ -1,4 +1,4 @@
-"""A study: a model, what is asked of it, and its results."""
+"""A study: a model, the questions about it, and their results."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ Model = str | Path | Mapping[str, Any]
 
 
 class Study:
-    """A model, and what is asked of it.
+    """A model, and the questions about it.
 
     Args:
         model: path of a model file, or its content as a dictionary (formulas and values with units as strings).
@@ -39,8 +39,8 @@ class Study:
         scenes: scenes to run; by default all.
         certify: whether to add certified bounds.
         threads: number of threads; results do not depend on it.
-        skip_infeasible: whether to leave out parameter values with which the mechanism cannot be assembled.
-        costly: whether to run what takes more than about a minute.
+        skip_infeasible: whether to omit parameter values with which the mechanism cannot be assembled.
+        costly: whether to run if it takes more than about a minute.
         folder: where the results are written; by default a temporary folder, which is removed with the study.
     """
 
@@ -94,8 +94,8 @@ class Study:
             executor: any executor of :mod:`concurrent.futures` runs the shards, such as Dask's ``client.get_executor()``,
                 ``mpi4py.futures`` or submitit's; without one, the command runs here. Results are the same to the bit. The
                 workers need this package, and see the same files.
-            store: folder for what is simulated, where a run that was interrupted goes on; by default temporary.
-            at_once: with an executor, what takes less than this on one core, in s, is simulated here.
+            store: folder for the simulations, from which an interrupted run continues; by default temporary.
+            at_once: with an executor, simulations that take less than this on one core, in s, run here.
 
         Raises:
             MbintError: the model has errors, or a run failed.
@@ -124,7 +124,7 @@ class Study:
 
     @cached_property
     def results(self) -> dict[str, Result]:
-        """Results by scene; of a model without scenes there is one, under its name.
+        """Results by scene; a model without scenes has one, under its name.
 
         Raises:
             FileNotFoundError: the study was not run.
@@ -182,7 +182,7 @@ class Study:
 
     @property
     def unreliable(self) -> xr.Dataset:
-        """Where the stated error is not to be relied on: a variable for each method over (time, output)."""
+        """Whether the stated error is unreliable: a variable for each method over (time, output)."""
         return self.result.unreliable
 
     @property
@@ -207,7 +207,7 @@ def shard_all(executor: Executor, study: str) -> None:
 
 
 def shard(study: str, index: int) -> None:
-    """Simulates one shard of a planned study, on one thread, where it is not there yet.
+    """Simulates one shard of a planned study, on one thread, if it is not stored yet.
 
     Raises:
         MbintError: it failed.
@@ -261,7 +261,7 @@ def _spelled(value: object) -> object:
 
 
 def _plain(value: object) -> object:
-    """What JSON has for numbers of numpy."""
+    """JSON values for numbers of numpy."""
     if isinstance(value, (np.generic, np.ndarray)):
         return value.tolist()
     raise TypeError(f"a model cannot have a {type(value).__name__}")

@@ -33,7 +33,7 @@ def at(model: Model, point: tuple[Fraction, ...]) -> Fraction:
 
 
 def off(model: Model, point: tuple[Fraction, ...], exact: Fraction) -> Fraction:
-    """How far a number is beyond a model's radius."""
+    """Distance of a number beyond a model's radius."""
     return abs(at(model, point) - exact) - Fraction(model.radius, ONE)
 
 
@@ -61,7 +61,7 @@ def test_models_hold_exact_results() -> None:
             sine, cosine = b.sin_cos()
             assert off(sine, point, Fraction(math.sin(y))) <= 1e-15
             assert off(cosine, point, Fraction(math.cos(y))) <= 1e-15
-    # What is cut off is of the sixth degree: 32^-6/6! = 1.3e-12 of the argument.
+    # The terms that are cut off are of the sixth degree: 32^-6/6! = 1.3e-12 of the argument.
     small = Model(space, [3 * ONE, ONE // 64, ONE // 64, *[0] * (space.count - 3)], 0)
     assert 0 < small.sin_cos()[0].radius < ONE // 10**11
 

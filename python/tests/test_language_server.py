@@ -75,7 +75,7 @@ async def client(lsp_client: LanguageClient, tmp_path_factory: pytest.TempPathFa
 
 
 class Editor:
-    """A document in the client, with places given by their text."""
+    """A document in the client, with positions given by their text."""
 
     def __init__(self, client: LanguageClient, name: str, text: str) -> None:
         self.client, self.text, self.version = client, text, 1
@@ -87,7 +87,7 @@ class Editor:
         client.text_document_did_open(lsp.DidOpenTextDocumentParams(text_document=item))
 
     def at(self, place: str) -> dict:
-        """Where the `|` of a piece of the text is."""
+        """Position of the `|` of a piece of the text."""
         before = place.index("|")
         offset = self.text.index(place.replace("|", "")) + before
         lines = self.text[:offset].split("\n")
@@ -104,7 +104,7 @@ class Editor:
         self.text = self.text.replace(old, new, 1)
 
     async def diagnostics(self, until=bool, tries: int = 100) -> list[lsp.Diagnostic]:
-        """Those of the document, as soon as they are as wanted."""
+        """Diagnostics of the document, as soon as `until` accepts them."""
         for _ in range(tries):
             found = self.client.diagnostics.get(self.uri, [])
             if until(found):
@@ -237,7 +237,7 @@ async def test_definitions_references_and_new_names(client: LanguageClient) -> N
     await editor.diagnostics(lambda found: editor.uri in client.diagnostics)
     [definition] = await client.text_document_definition_async(lsp.DefinitionParams(**editor.at("height: arm.ti|p.y")))
     assert editor.text_in(definition.range) == "tip" and definition.range.start.line == 6
-    # The joint and the point of the same name are told apart.
+    # The joint and the point of the same name are distinguished.
     assert [found.range.start.line for found in await editor.references("  hin|ge: {")] == [8, 14]
     assert [found.range.start.line for found in await editor.references("arm.hin|ge]")] == [6, 8]
     assert len(await editor.references("  len|gth: {")) == 3

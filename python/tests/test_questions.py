@@ -1,4 +1,4 @@
-"""Questions beside bounds over time, against sums of tolerances. The variable MBINT names the command."""
+"""Questions other than bounds over time, against sums of tolerances. The variable MBINT names the command."""
 
 from pathlib import Path
 
