@@ -100,7 +100,7 @@ impl Matrices {
         Self { mass, stiffness }
     }
 
-    /// As a model has it: rows up to the diagonal.
+    /// Text of a model's superelement: rows of the matrices up to the diagonal.
     pub fn yaml(&self, nodes: &[[f64; 3]], modes: usize) -> String {
         let rows = |of: &DMatrix<f64>| {
             let row = |i: usize| {

@@ -21,7 +21,7 @@ impl Case {
         Self { line: line.into_iter().collect(), figures: Vec::new(), broken: Vec::new() }
     }
 
-    /// Where the expected values come from.
+    /// Source of the expected values.
     pub fn source(mut self, source: &str) -> Self {
         self.line.insert("source".to_owned(), json!(source));
         self
@@ -75,7 +75,7 @@ impl Case {
         self
     }
 
-    /// Writes the case, and says which figures are beyond their limits.
+    /// Writes the case; returns its figures that are beyond their limits.
     #[must_use]
     pub fn write(mut self) -> String {
         self.line.insert("figures".to_owned(), Value::Array(self.figures));

@@ -77,7 +77,7 @@ pub fn model_of(text: &str) -> Model {
     Model::from_yaml_str("test", text).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// A study of a model from text, as users of the library ask for one.
+/// A study of a model from text, as users of the library make one.
 #[track_caller]
 pub fn study_of(text: &str) -> Study<'static> {
     model_of(text).study().allow_costly()
@@ -108,7 +108,7 @@ pub fn nominal(subject: &Subject) -> Bounds {
     run_methods(subject, Some(Vec::new())).0
 }
 
-/// Runs these methods, or those that are asked for; nothing may fail.
+/// Runs these methods, or the requested ones; nothing may fail.
 #[track_caller]
 pub fn run_methods(subject: &Subject, methods: Option<Vec<Method>>) -> (Bounds, Summary) {
     let (bounds, summary) = subject.finished(methods);

@@ -74,7 +74,7 @@ const RUN: &str = "outputs: { energy: energy }\nsimulation: { duration: 0.5, ste
 /// the step, and that energy flows at all.
 #[track_caller]
 pub fn assert_balance(text: &str, power: &str) {
-    // From here on the errors have faded that the start leaves in reactions.
+    // From this time on, the start's errors in reactions have faded.
     const FIRST: f64 = 0.1;
     // A constant is no output.
     let is_none = power == "0";

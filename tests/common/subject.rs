@@ -27,7 +27,7 @@ impl Subject {
         self.model.name()
     }
 
-    /// With this asked of its study after everything else.
+    /// Adds a setting of its study, after all others.
     pub fn asking(mut self, ask: impl Fn(Study<'static>) -> Study<'static> + Send + Sync + 'static) -> Self {
         self.asked.push(Arc::new(ask));
         self
@@ -69,7 +69,7 @@ impl Subject {
         self.asking(move |study| study.extrapolation(levels))
     }
 
-    /// Integrated by HHT-I3, whatever would be cheaper.
+    /// Integrates by HHT-I3, even if another scheme is cheaper.
     pub fn by_hht(self) -> Self {
         self.scheme(SchemeChoice::Hht)
     }
@@ -126,7 +126,7 @@ impl Subject {
         self.model.uncertain().count()
     }
 
-    /// The study that is asked for.
+    /// The requested study.
     pub fn study(&self) -> Study<'static> {
         self.asked.iter().fold(self.model.study().allow_costly(), |study, ask| ask(study))
     }

@@ -70,7 +70,7 @@ fn a_loose_pin_stays_in_its_bearing_and_the_slider_near_its_place() {
         let description = loose(friction);
         let bounds = nominal(&description.clone().observing(&["slider.x", "wrist.gap", "wrist.force", "drive.torque"]));
         let (gap, force) = (curve(&bounds, "wrist.gap"), curve(&bounds, "wrist.force"));
-        // As deep as its largest force goes, in a bearing of 0.1 mm.
+        // Depth under its largest force, in a bearing of 0.1 mm.
         let deepest = (largest(force.iter().copied()) / 1e9).powf(2.0 / 3.0);
         let lowest = gap.iter().copied().fold(0.0, f64::min);
         println!("deepest {lowest:.3e}, largest force {:.3e}", largest(force.iter().copied()));

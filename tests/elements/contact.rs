@@ -84,8 +84,7 @@ simulation: {{ duration: 0.2, step: 1e-4, output_step: 0.01 }}
     }
 }
 
-/// Where no law of the literature is named, an impact at that speed leaves the restitution itself, whatever the
-/// exponent.
+/// If no law of the literature is named, an impact at that speed has the given restitution, whatever the exponent.
 #[test]
 fn an_impact_leaves_its_restitution() {
     for (restitution, keys) in [(1.0, ""), (0.9, ""), (0.8, ", exponent: 1"), (0.5, ", exponent: 2"), (0.15, "")] {

@@ -71,8 +71,8 @@ fn nearest_of(points: &[Point]) -> (Point, Vec<Point>) {
     (index, chosen)
 }
 
-/// How far two bodies are apart, of which the second is turned and displaced; zero where they meet. A lower and an
-/// upper bound of it agree to a nanometre.
+/// Distance of two bodies, the second of which is turned and displaced; zero if they meet. A lower and an upper bound
+/// of it agree to a nanometre.
 fn apart(first: &Body, second: &Body, rotation: [Point; 3], position: Point) -> f64 {
     let farthest = |direction: Point| {
         let local = rotation.map(|axis| dot(axis, direction));

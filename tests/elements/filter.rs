@@ -146,7 +146,7 @@ simulation: { duration: 1, step: 1e-3, output_step: 0.5 }
 }
 
 /// A filter that rings faster than the steps are long, from a start that is not settled: the steps damp it, halved ones
-/// too, and the error says so.
+/// too, and the error contains this.
 #[test]
 fn steps_that_damp_a_ringing_filter_say_so() {
     let (omega, damping) = (5e3_f64, 1e-4);

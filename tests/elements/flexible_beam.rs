@@ -32,7 +32,7 @@ simulation: {{ {run} }}
     ))
 }
 
-/// Where it comes to rest.
+/// Cantilever at rest under a load.
 fn rest(elements: usize, axial: f64, load: &str) -> Bounds {
     nominal(&cantilever(elements, 0.01, axial, 0.5, load, "duration: 20, step: 0.01, output_step: 1"))
 }

@@ -107,8 +107,8 @@ fn sealed_oil_is_a_spring() {
     assert!(off < 5e-3, "{off}");
 }
 
-/// Without rod and load, half of the supply's pressure falls at either edge: v = K x √(p_S/2)/A, of which the bore
-/// decides.
+/// Without rod and load, half of the supply's pressure falls at either edge: v = K x √(p_S/2)/A, which the bore
+/// determines.
 #[test]
 fn an_open_valve_gives_a_steady_speed() {
     let cylinder = "valve: 0.3, supply: 70 bar, piston_pressure: 35 bar, rod_pressure: 35 bar";

@@ -89,8 +89,8 @@ fn bounds_over_the_lag_are_those_of_the_closed_form() {
     }
 }
 
-/// A speed by the way that is left: θ̇ = 3 (1.2 − θ), in the plane and in space, and one by a state that feels where it
-/// is.
+/// A speed by the remaining way: θ̇ = 3 (1.2 − θ), in the plane and in space, and one by a state that depends on the
+/// position.
 #[test]
 fn a_speed_may_follow_positions() {
     for (space, formulation) in [("", "absolute"), ("", "joint"), (", z: 0", "absolute")] {

@@ -67,7 +67,7 @@ simulation: { duration: 3, output_step: 0.5, step: 1e-3 }
     }
 }
 
-/// A weight that it does not know of: the integral carries it in the end, whatever the gain is.
+/// A weight that the controller does not know: the integral carries it in the end, whatever the gain is.
 #[test]
 fn the_integral_carries_the_load() {
     let text = "

@@ -9,7 +9,7 @@ use crate::common::{largest, model, nominal};
 fn the_yoke_is_where_the_pin_is() {
     let bounds = nominal(&model("scotch_yoke").observing(&["yoke.x - radius*cos(wheel.angle)", "wheel.angle"]));
     assert!(largest(bounds.outputs[0].nominal.iter().copied()) < 1e-12);
-    // Several turns were made, so that this says something.
+    // Several turns were made, so that the comparison is meaningful.
     assert!(bounds.outputs[1].nominal.last().unwrap() > &(2.0 * TAU));
 }
 

@@ -30,7 +30,7 @@ simulation: { duration: 2, step: 1e-3, output_step: 0.01 }
     assert_converges(&description, 1e-3, "speed", 1e-7, speed);
 }
 
-/// A spring by a table of a parabola's slope keeps the energy that the parabola's integral says.
+/// A spring by a table of a parabola's slope stores the energy of the parabola's integral.
 #[test]
 fn a_spring_may_have_a_measured_characteristic() {
     let mut points = String::new();

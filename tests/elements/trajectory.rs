@@ -107,7 +107,7 @@ simulation: {{ duration: 1, output_step: 0.1, {simulation} }}
     }
 }
 
-/// Where it goes is uncertain: x = x₁ σ(u), with σ a smooth step, in every method.
+/// Uncertain end of a way: x = x₁ σ(u), with σ a smooth step, in every method.
 #[test]
 fn uncertain_points_are_bounded() {
     let description = read(

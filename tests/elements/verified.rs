@@ -61,7 +61,7 @@ fn energy(found: &Verification) -> &'static str {
     }
 }
 
-/// A row of the table; `None` where the example does not stand in this space.
+/// A row of the table; `None` if the example is refused in this space.
 fn row(mechanism: &Mechanism, spatial: bool, keyword: &str, example: &str) -> Option<Result<String, String>> {
     let space = if spatial { "space" } else { "plane" };
     let case = Case::new("elements", &format!("`{keyword}`, {space}"));

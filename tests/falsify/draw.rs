@@ -62,7 +62,7 @@ impl Term {
     }
 }
 
-/// How channels of different terms make an output.
+/// Combination of channels of different terms into an output.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Combine {
     Sum,
@@ -116,7 +116,7 @@ impl Time {
     }
 }
 
-/// Bounds that are asked for.
+/// Requested bounds.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Bounds {
     pub chebyshev: Option<usize>,

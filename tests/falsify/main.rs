@@ -315,7 +315,7 @@ fn root_mean_squares_are_honest() {
     excited("random excitations", 60, excited::squares);
 }
 
-/// Certified bands hold every motion; of some draws there are some.
+/// Certified bands contain every motion; some draws have such bands.
 fn proven(draws: u64) {
     let seed = asked("MBINT_FALSIFY_SEED").unwrap_or(known::SEED);
     let tally = certified::compare(seed, asked("MBINT_FALSIFY_QUESTIONS").unwrap_or(draws));

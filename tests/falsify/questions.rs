@@ -53,7 +53,7 @@ fn above(squares: usize, limit: f64) -> f64 {
     sum * (-half).exp()
 }
 
-/// Where a falling function has a value.
+/// Argument at which a falling function has a value, by bisection.
 fn solve(f: impl Fn(f64) -> f64, value: f64, mut lower: f64, mut upper: f64) -> f64 {
     for _ in 0..200 {
         let middle = 0.5 * (lower + upper);

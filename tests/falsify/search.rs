@@ -264,7 +264,7 @@ impl<'t> Grid<'t> {
             best = best.max(moved(&place));
         }
         if self.level > 0 {
-            // Nor does it follow them: where a band seems to be missed, motions are integrated on the way.
+            // Nor does it follow kinks: where a band seems to be missed, motions are integrated on the way.
             for &sample in candidates.iter().take(DRAWN_ABOUT) {
                 let found = climb(&self.place(sample), self.points, value(sample), &moved);
                 best = best.max(narrowed(&found, self.points, DRAWN_MOTIONS, &moved));
@@ -290,7 +290,7 @@ impl<'t> Grid<'t> {
         true
     }
 
-    /// By the polynomial of degree 4 in each parameter through the points around a sample.
+    /// Value by the polynomial of degree 4 in each parameter through the points around a sample.
     fn interpolated(&self, sample: usize, place: &[f64], channel: usize, row: usize) -> f64 {
         const WIDTH: usize = 5;
         let corner: Vec<usize> = (0..place.len())

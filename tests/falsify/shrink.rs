@@ -13,7 +13,7 @@ const PATIENCE: Duration = Duration::from_secs(15);
 pub fn shrink(draw: &Draw, verdict: &Verdict) -> (Draw, Verdict) {
     let begun = Instant::now();
     let mut best = (only(draw, verdict), verdict.clone());
-    // It is to stay about as bad.
+    // The miss must stay about as bad.
     let enough = (0.5 * badness(verdict)).min(10.0);
     match missed(&best.0) {
         Some(verdict) => best.1 = verdict,
@@ -33,7 +33,7 @@ pub fn shrink(draw: &Draw, verdict: &Verdict) -> (Draw, Verdict) {
     }
 }
 
-/// With the output and the method of a verdict alone.
+/// The draw with the output and the method of a verdict alone.
 fn only(draw: &Draw, verdict: &Verdict) -> Draw {
     let mut draw = draw.clone();
     draw.outputs = vec![draw.outputs[verdict.output].clone()];
@@ -48,7 +48,7 @@ fn only(draw: &Draw, verdict: &Verdict) -> Draw {
     draw
 }
 
-/// How many times the stated error the true one is, at worst.
+/// Largest ratio of true to stated error.
 fn badness(verdict: &Verdict) -> f64 {
     verdict.worst().map_or(0.0, |miss| miss.off / miss.stated)
 }

@@ -139,7 +139,7 @@ fn median(values: &[f64]) -> f64 {
 /// Bands, and draws that have none.
 #[derive(Default)]
 pub struct Table {
-    /// By family and method.
+    /// Lines by family and method.
     lines: BTreeMap<(String, String), Line>,
     /// Counts by family: draws, refused, panicked, out of time, seconds, the longest.
     draws: BTreeMap<String, [f64; 6]>,

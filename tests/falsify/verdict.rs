@@ -9,7 +9,7 @@ use mbint::{Band, Method, Model, StudyResult};
 use crate::draw::Draw;
 use crate::truth::{self, Range};
 
-/// Longer than any draw should take, unless the environment says otherwise.
+/// Time limit of a draw, longer than any should take, or that of the environment.
 fn patience() -> Duration {
     Duration::from_secs(crate::asked("MBINT_FALSIFY_PATIENCE").unwrap_or(60))
 }

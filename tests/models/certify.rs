@@ -23,8 +23,8 @@ fn certify(description: Subject) -> (Bounds, Option<String>) {
     (bounds, summary.failure)
 }
 
-/// Asserts that every row holds the scan; the largest overestimation of the width, relative to the scan's, over rows
-/// from `from` seconds on, is returned for each output.
+/// Asserts that every row contains the scan; returns, for each output, the largest overestimation of the width relative
+/// to the scan's, over rows from `from` seconds on.
 #[track_caller]
 fn overestimation(bounds: &Bounds, from: f64) -> Vec<f64> {
     let mut found = Vec::new();

@@ -12,7 +12,7 @@ const CLOSED: f64 = 1e-10;
 
 pub(super) type Point = [f64; 2];
 
-/// Where two circles meet, to the left of the way from the first centre to the second.
+/// Intersection of two circles, to the left of the way from the first centre to the second.
 pub(super) fn left_of(first: Point, radius: f64, second: Point, other: f64) -> Point {
     let (x, y) = (second[0] - first[0], second[1] - first[1]);
     let distance = x.hypot(y);

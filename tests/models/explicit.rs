@@ -100,7 +100,7 @@ fn a_tolerance_of_the_bounds_takes_it() {
     assert!(error < 5e-5, "{error:e}");
 }
 
-/// A stiff bushing: stability limits the explicit steps, which is said, and `auto` takes HHT-I3.
+/// A stiff bushing: stability limits the explicit steps, which is reported, and `auto` takes HHT-I3.
 #[test]
 fn what_is_stiff_is_left_to_the_scheme() {
     let text = "

@@ -52,7 +52,8 @@ fn covered(text: &str, work: f64, slack: f64) -> usize {
     counted
 }
 
-/// Rows that are not flagged at least, of 18: of fixed steps those before the brake, which is reached after 0.25 s.
+/// Least number of rows that are not flagged, of 18: with fixed steps those before the brake, which is reached after
+/// 0.25 s.
 fn least(stepping: &str) -> usize {
     if stepping.starts_with("tolerance") { 16 } else { 4 }
 }

@@ -127,7 +127,7 @@ simulation: {{ duration: 1.25, step: 1e-4, output_step: 0.01 }}
     )));
     let angles = curve(&bounds, "angle");
     let at = |time: f64| angles[(time / 0.01).round() as usize];
-    // Where it is pushed against a tooth: the middle of each half wave that turns it back.
+    // Angles at which it is pushed against a tooth: the middle of each half wave that turns it back.
     let rests = [0.2, 0.72, 1.23].map(at);
     for pair in rests.windows(2) {
         let teeth = (pair[0] - pair[1]) / 30.0;

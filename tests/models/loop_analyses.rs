@@ -129,7 +129,7 @@ fn enclosures_of_loops_hold_every_sample() {
     }
 }
 
-/// That certified bounds hold the scan, and are hardly wider.
+/// Asserts that certified bounds contain the scan, and are hardly wider.
 fn assert_held(bounds: &Bounds) {
     for output in &bounds.outputs {
         let (scan, certified) = (band(output, Method::Scan), band(output, Method::Certified));

@@ -1,4 +1,5 @@
-//! Which joint of a loop is cut: by it a step becomes as short as is found, and the motion does not change.
+//! Choice of the joint at which a loop is cut: a step becomes as short as the search finds, and the motion does not
+//! change.
 
 use mbint::Formulation;
 use mbint::inner::assemble::{self, Questions};

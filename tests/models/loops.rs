@@ -149,7 +149,7 @@ fn a_box_across_a_change_point_is_bounded_as_in_absolute_coordinates() {
     }
 }
 
-/// Where the model leaves the formulation open, loops are closed in the branch that absolute coordinates find, also
+/// If the model leaves the formulation open, loops are closed in the branch that absolute coordinates find, also
 /// without guesses.
 #[test]
 fn auto_closes_loops_in_the_branch_of_absolute_coordinates() {

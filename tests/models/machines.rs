@@ -19,7 +19,8 @@ fn slope(f: impl Fn(f64) -> f64, x: f64) -> f64 {
     (8.0 * (f(x + h) - f(x - h)) - (f(x + 2.0 * h) - f(x - 2.0 * h))) / (12.0 * h)
 }
 
-/// Where the plate of `delta_robot.yaml` is, by the arms' angles: the lower of the two points where three spheres meet.
+/// Position of the plate of `delta_robot.yaml`, by the arms' angles: the lower of the two points where three spheres
+/// meet.
 fn plate(angles: [f64; 3]) -> [f64; 3] {
     let (base, arm, rod, plate) = (0.2, 0.3, 0.6, 0.06);
     let centres: [[f64; 3]; 3] = std::array::from_fn(|leg| {

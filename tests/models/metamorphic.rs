@@ -9,8 +9,8 @@ use crate::honesty_search::{assert_honest, oscillators, sum};
 /// Every method, and a degree that follows from a tolerance.
 const METHODS: &str = "chebyshev: { order: 8 }, taylor: { order: 4 }, scan: { points: 9 }";
 
-/// How far two bands of any method are apart at most: over the width of the first, and over the errors that both state.
-/// `map` takes the ends of the second to those of the first.
+/// Largest distance of two bands of any method: over the width of the first, and over the errors that both state. `map`
+/// takes the ends of the second to those of the first.
 fn apart(a: (&Bounds, &str), b: (&Bounds, &str), map: impl Fn(f64, f64) -> (f64, f64)) -> [f64; 2] {
     let (a, b) = (output(a.0, a.1), output(b.0, b.1));
     let methods: Vec<Method> = a.bands.iter().map(|band| band.method).collect();

@@ -36,7 +36,7 @@ const ROBOTS: [(&str, &str); 15] = [
     ("welded", ""),
 ];
 
-/// How `tests/reference/mjcf/*.csv` were made.
+/// Origin of `tests/reference/mjcf/*.csv`.
 const MUJOCO: &str = "MuJoCo 4.0, implicitfast at 1e-5 and 2e-5 s, extrapolated";
 
 fn folder() -> PathBuf {

@@ -25,7 +25,7 @@ fn lift(angle: f64) -> [f64; 3] {
 fn the_cam_pushes_with_the_followers_inertia_and_spring() {
     let (base, stiffness, preload, mass, speed) = (0.03, 2000.0, 60.0, 0.25, 300.0 / 60.0 * TAU);
     let names = ["height", "contact", "side", "torque"];
-    // Where the follower is is kinematics; forces follow from accelerations, of which the scheme's order is two.
+    // The follower's position is kinematics; forces follow from accelerations, which have the scheme's order of two.
     let expected = |t: f64| {
         let [s, slope, curvature] = lift(speed * t);
         let upwards = mass * curvature * speed * speed + preload + stiffness * s;

@@ -213,7 +213,7 @@ fn subsystems_simulated_together_give_the_same() {
         let widest = (0..apart.times.len()).map(width).fold(0.0, f64::max);
         for (one, other) in of_apart.iter().zip(of_joined) {
             assert_eq!(one.parameter, other.parameter);
-            // Where a band has no width there is nothing to have a share in.
+            // A band without width has no shares.
             for row in (0..apart.times.len()).filter(|&row| width(row) > 1e-3 * widest) {
                 let (x, y) = (one.total[row], other.total[row]);
                 assert!((x - y).abs() < 1e-6, "{} {row}: {x} {y}", output.name);
@@ -535,7 +535,7 @@ bounds: { chebyshev: { order: 4 } }
     assert!((total(0) - 1.0).abs() < 1e-9 && total(1) == 0.0, "{} {}", total(0), total(1));
 }
 
-/// Where nothing at all can move, there is still something to be observed.
+/// Outputs can be observed even if nothing can move.
 #[test]
 fn what_stands_still_can_be_observed() {
     let text = |outputs: &str| {

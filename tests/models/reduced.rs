@@ -197,7 +197,7 @@ bounds: { chebyshev: { order: 5 } }
     assert!(!band.unresolved && band.error < 1e-3, "{band:?}");
     assert!(never.occurs.as_ref().is_some_and(|occurs| 0 < occurs.samples && occurs.samples < occurs.of), "{never:?}");
     assert_eq!(requirement(&summary, "high").verdict, Verdict::Holds);
-    // Where it does not occur, the requirement fails.
+    // The requirement fails where it does not occur.
     assert_eq!(requirement(&summary, "occurs").verdict, Verdict::Violated);
 }
 
@@ -238,7 +238,7 @@ bounds: { chebyshev: { order: 6 } }
     assert!(off <= band.error + missed && band.error < 0.05, "{band:?} instead of [{lower}, {upper}]");
 }
 
-/// Thrown up at 3 m/s under 9 m/s² it rises to 0.5 m, which is no more than 0.5 m, whatever rounding says.
+/// Thrown up at 3 m/s under 9 m/s² it rises to 0.5 m, which meets a limit of 0.5 m in spite of rounding.
 #[test]
 fn what_meets_its_limit_exactly_is_not_violated() {
     let text = "

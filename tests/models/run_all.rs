@@ -18,7 +18,7 @@ fn every_model_is_read_without_diagnostics() {
 /// Parameters beyond which one method is enough.
 const MANY: usize = 20;
 
-/// All that was asked for is there: every row of every method of every output, with bounds that are ordered.
+/// Asserts that all requested results exist: every row of every method of every output, with ordered bounds.
 pub fn assert_complete(description: &Subject, bounds: &Bounds, summary: &Summary) {
     // Bricard's loop moves because one of its constraints is implied by the others.
     let redundant = usize::from(description.name() == "bricard");

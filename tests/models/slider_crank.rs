@@ -11,7 +11,7 @@ use crate::common::{
     Subject, band, curve, distance, largest, model, nominal, order, output, reference, richardson, row, run,
 };
 
-/// How the reference was made, and where the mechanism is from.
+/// Method of the reference, and origin of the mechanism.
 const REFERENCE: &str = "Wu, Luo and Zhang's example; minimal coordinate, DOP853 at 1e-11";
 
 /// t, x3, θ₁, ω₁.

@@ -400,7 +400,7 @@ simulation: {{ duration: 0.1, step: 1e-3 }}
     assert_eq!(shared("ground.high", "[1, 1, 2]"), ["ball.y", "ball.z"]);
 }
 
-/// Where a turntable moves, a ball on it may move along or spin.
+/// A ball on a moving turntable may move along or spin.
 #[test]
 fn rotations_that_are_left_open_are_called_as_initial_calls_them() {
     let study = study_of(

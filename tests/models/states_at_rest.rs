@@ -121,7 +121,7 @@ fn a_step_of_the_target_moves_it_from_there() {
     assert!(largest(angle[..5].iter().map(|angle| angle - 0.5)) < 1e-10 && angle[8] > 0.52, "{angle:?}");
 }
 
-/// A state that nothing brings to rest has no equilibrium; that is said of it.
+/// A state that nothing brings to rest has no equilibrium, and the message names it.
 #[test]
 fn a_state_that_cannot_rest_is_named() {
     for (states, what) in [

@@ -120,7 +120,7 @@ fn what_lies_outside_of_the_box_is_said() {
     // Three laws with 0.27 % outside of ±3σ each; the surrogate reaches six.
     assert!((found.summary.outside - 3.0 * 2.699_796e-3).abs() < 1e-7 && found.summary.left_out < 1e-8);
     assert!(found.summary.simulations > 0 && found.summary.parameters.iter().all(|law| law.tolerance_is_three_sigma));
-    // Where there is no mechanism beyond the box, laws are cut off, and that is said.
+    // Laws are cut off where there is no mechanism beyond the box, and this is reported.
     let rod = "
   l: { value: 0.5, unit: m, tolerance: 0.12 m, distribution: normal }";
     let text = format!(

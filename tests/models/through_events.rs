@@ -234,7 +234,7 @@ pub fn assert_within(bounds: &Bounds, name: &str, method: Method, slack: f64, tr
     }
 }
 
-/// Asserts that a method bounds throws of which part touches the ceiling.
+/// Asserts that a method bounds throws some of which touch the ceiling.
 #[track_caller]
 fn assert_throws(request: &str, method: Method) {
     let text = CEILING.replace("chebyshev: { order: 5 }", request);
@@ -331,7 +331,7 @@ fn a_single_motion_takes_few_steps() {
     assert!(largest(off) < 1e-8);
 }
 
-/// That of HHT-I3 is in `scheme_between_events`.
+/// The test of HHT-I3 is in `scheme_between_events`.
 #[test]
 fn an_explicit_scheme_that_is_asked_for_is_taken() {
     let text = ELASTIC.replace("step: 1e-3", "tolerance: 1e-6, scheme: explicit");

@@ -317,7 +317,7 @@ bounds: { chebyshev: { order: 3 } }
     assert_eq!((of_v.main[0], of_v.width_without[0]), (0.0, 0.0));
 }
 
-/// Where nothing is uncertain there is nothing to expand, but steps to choose.
+/// Without uncertain parameters there is nothing to expand, but steps are chosen.
 #[test]
 fn nothing_uncertain_has_a_tolerance_too() {
     let bounds = run(&within(model("slider_crank_one").with("l1", 0.15), 1e-3, 100));

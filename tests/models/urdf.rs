@@ -39,7 +39,7 @@ impl Files {
 
 const GRAVITY: &str = "effects: { weight: { gravity: { acceleration: [0, 0, -9.81] } } }\n";
 
-/// How `urdf/*.csv` of the third-party results were made.
+/// Origin of `urdf/*.csv` of the third-party results.
 const PINOCCHIO: &str = "Pinocchio's articulated-body algorithm, DOP853 at 1e-11";
 
 fn link(name: &str, mass: f64, xyz: &str, inertia: [f64; 3]) -> String {

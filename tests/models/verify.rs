@@ -180,7 +180,7 @@ fn redundant_constraints_are_named() {
     assert!(found.formulations.iter().all(|own| own.redundant.len() == 1 && own.singular_at_start.is_empty()));
 }
 
-/// Where all cranks lie along the bar, two more depend on others at the start; whatever a motion from there shows.
+/// Where all cranks lie along the bar, two more constraints depend on others at the start.
 #[test]
 #[ignore = "a minute: orders do not show so near to a singular position"]
 fn singular_constraints_are_named() {

@@ -29,7 +29,7 @@ fn is_expectation(line: &str) -> bool {
     line.is_some_and(|line| ["error[", "warning[", "help: "].iter().any(|start| line.starts_with(start)))
 }
 
-/// As comments of the file's language; in those of XML no two hyphens stand together.
+/// Lines as comments of the file's language; comments of XML contain no two hyphens in a row.
 fn commented(path: &Path, lines: Vec<String>) -> Vec<String> {
     if path.extension().is_some_and(|extension| extension == "yaml") {
         return lines;

@@ -116,7 +116,7 @@ fn a_sample_that_fails_is_one_sample() {
     }
 }
 
-/// A program with a mistake in it fails for every point: it is asked for the nominal one, and tried again once.
+/// A program with a mistake in it fails for every point: only the nominal one is requested, and tried again once.
 #[test]
 fn a_program_that_always_fails_is_asked_for_one_point() {
     let place = place("right", "requirements: { near: x <= 1001 mm }\nbounds: { tolerance: 1e-3 }");
@@ -262,7 +262,7 @@ fn noise_is_found_and_stated() {
     assert!(error > 0.3 * noise, "{error} beside {noise}");
 }
 
-/// A response that jumps over the parameters has no polynomial: that is said, and the error covers the jump.
+/// A response that jumps over the parameters has no polynomial: this is reported, and the error covers the jump.
 #[test]
 fn jumps_are_flagged() {
     let place = place("right", "bounds: { chebyshev: { order: 4 } }");

@@ -166,7 +166,7 @@ fn examples_that_are_run_give_their_codes_and_cures_do_not() {
     expect_right(Code::ALL.iter().copied().filter(has_commands));
 }
 
-/// Letters of codes say how bad it is; and every code is one that the source gives.
+/// Letters of codes mean their severity; and the source gives every code.
 #[test]
 fn every_code_is_given_somewhere() {
     let mut sources = String::new();

@@ -9,7 +9,7 @@ use super::place::Place;
 
 const INCH: f64 = 0.0254;
 
-/// A falling ball, y = −g t²/2 with g ± 1 %, of which no limit holds.
+/// A falling ball, y = −g t²/2 with g ± 1 %, which meets none of its limits.
 const FALL: &str = "
 model: fall
 parameters: { g: 9.81 m/s^2 ± 1%, m: 500 g ± 2% }

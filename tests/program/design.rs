@@ -66,7 +66,7 @@ fn tolerances_are_chosen_by_cost() {
     let page = fs::read_to_string(place.path().join("out/design.html")).unwrap();
     assert!(page.contains("Cost against margin"), "{page}");
     place.run("run plate.yaml --with out/design.yaml -o after --no-report", 0);
-    // Where no tolerances will do, there is no cost to be proud of.
+    // If no tolerances meet the requirements, no saving of cost is reported.
     let model = fs::read_to_string(place.path().join("plate.yaml")).unwrap().replace("max: 1 m^2", "max: 0.1 m^2");
     fs::write(place.path().join("small.yaml"), model).unwrap();
     let (printed, error) = place.run("design small.yaml -o small", 4);

@@ -82,7 +82,7 @@ assemblies:
     ports: { tip: { on: bar, position: [l/2, 0.05] } }
 "#;
 
-/// How an assembly stands: r = g + A s.
+/// Placement of an assembly: r = g + A s.
 #[derive(Clone, Copy)]
 struct Planar {
     g: Vector2<f64>,
@@ -569,7 +569,7 @@ fn legs_around_a_body_move_alike() {
     }
 }
 
-/// An assembly says where bodies of instances within start, by their ports too, in its own frame.
+/// An assembly gives the starts of bodies of inner instances, by their ports too, in its own frame.
 #[test]
 fn starts_of_inner_bodies_are_in_the_frame_in_which_they_are_said() {
     let side = |mirror: &str| {

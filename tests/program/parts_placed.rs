@@ -387,7 +387,7 @@ outputs: {{ x1: one.fore.x + 1, y1: 2 - one.fore.z, z1: 3 + one.fore.y, x2: two.
     }
 }
 
-/// Where an instance is may be uncertain, each for itself.
+/// The placement of each instance may be uncertain by itself.
 #[test]
 fn a_place_has_tolerances() {
     let text = format!(

@@ -57,7 +57,7 @@ impl Place {
     }
 }
 
-/// All that is wrong with a model, or probably not meant.
+/// All diagnostics of a model: its errors or its warnings.
 pub fn told(model: Result<Model, Error>) -> Diagnostics {
     match model {
         Ok(model) => model.warnings().clone(),

@@ -490,7 +490,7 @@ scenes:
     place.run("run -q robot.yaml", 0);
     place.run("run -q by_hand.yaml", 0);
     let table = |name: &str| fs::read_to_string(place.path().join("results").join(name).join("bounds.csv")).unwrap();
-    // A limit is the stop that says the same, but that effects add up in another order.
+    // A limit equals the stop that is written out, but effects add up in another order.
     let numbers = |name: &str| -> Vec<f64> {
         let cells = table(name);
         let cells = cells.lines().skip(1).flat_map(|line| line.split(',').filter_map(|cell| cell.parse().ok()));

@@ -148,7 +148,7 @@ fn methods_are_those_of_the_model_with_what_the_study_says() {
         let result = study.run().unwrap();
         result.summary().methods.iter().find(|own| own.method == name).unwrap().simulations
     };
-    // As the model asks for it.
+    // As the model requests.
     assert_eq!(simulations(swing().study().methods(&[Method::Scan]), "scan"), 4);
     // An interval evaluation is wider than the polynomial's own range.
     let widths = [RangeKind::Tight, RangeKind::Interval].map(|range| {
@@ -257,7 +257,7 @@ bounds: { chebyshev: { order: 3 } }
 ";
     let model = Model::from_yaml_str("oscillator.yaml", text).unwrap();
     let study = model.study().threads(1).cost(1e-2, 6.0).unwrap();
-    // On a busy machine the budget may not allow a reference: then nothing is measured, which is said.
+    // On a busy machine the budget may not allow a reference: nothing is measured then, and this is reported.
     assert_eq!(study.has_reference(), !study.trajectories.is_empty());
     assert!(study.has_reference() || !study.left_out.is_empty());
     assert!(study.trajectories.iter().filter(|point| point.failure.is_none()).all(|point| point.seconds > 0.0));

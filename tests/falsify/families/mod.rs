@@ -253,7 +253,7 @@ fn request(random: &mut Random, uncertain: usize, adaptive: f64) -> Bounds {
     }
 }
 
-/// A parameter that may be uncertain by at most so much of its value.
+/// A parameter that may be uncertain by at most this share of its value.
 fn parameter(name: &str, index: usize, value: f64, most: f64) -> Parameter {
     Parameter { name: format!("{name}{index}"), value, half: 0.0, most, removable: false }
 }

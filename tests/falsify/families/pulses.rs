@@ -73,7 +73,7 @@ pub fn pulse(random: &mut Random, scale: &Scale) -> Term {
     let half = random.scale(5e-3, 50.0) * scale.step;
     let half = crate::random::digits(half.min(0.1 * scale.duration), 3);
     let centre = random.between(0.05, 0.9) * scale.duration;
-    // So strong that the motion changes by about as much as it was.
+    // Strong enough to change the motion by about its own size.
     let impulse = m * omega * x * random.scale(0.1, 3.0);
     let strength = crate::random::digits(impulse / (half * shape.area), 3);
     let parameters = vec![

@@ -19,7 +19,7 @@ struct Benchmark {
     rows: Vec<Vec<f64>>,
 }
 
-/// Where a benchmark's solution stands.
+/// Location of a benchmark's solution.
 struct Solution {
     file: &'static str,
     source: &'static str,
@@ -194,7 +194,7 @@ fn order_two_down_to_round_off() {
         for pair in errors.windows(2).take_while(|pair| pair[1] > rounding) {
             assert!((order(pair[0], pair[1]) - 2.0).abs() < 0.25, "{}: {errors:?}", benchmark.name);
         }
-        // Where it shows it does no harm.
+        // Rounding may stop the decrease, but does no harm.
         assert!(errors.iter().all(|error| *error <= errors[0]), "{}: {errors:?}", benchmark.name);
     }
 }

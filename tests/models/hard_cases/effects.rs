@@ -339,7 +339,7 @@ fn a_slider_crank_with_clearance_runs_on() {
         largest(off.iter().copied())
     );
     assert!(largest(off) < 1e-5);
-    // As deep as its largest force goes.
+    // The depth is that of the largest force.
     let gaps = curve(&bounds, "gap");
     let (deepest, loosest) = (-gaps.iter().copied().fold(0.0, f64::min), gaps.iter().copied().fold(0.0, f64::max));
     let force = largest(curve(&bounds, "force").iter().copied());

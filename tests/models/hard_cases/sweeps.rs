@@ -132,7 +132,7 @@ simulation: {{ duration: 1, step: 1e-4, output_step: 1 }}
     )
 }
 
-/// Where that bob is after a second, by Runge and Kutta's method.
+/// Position of that bob after a second, by Runge and Kutta's method.
 fn springy_exactly(stiffness: f64, steps: usize) -> [f64; 2] {
     let slope = |[x, y, vx, vy]: [f64; 4]| {
         let length = x.hypot(y);

@@ -103,7 +103,7 @@ fn energy_is_balanced() {
         let [(coarse, kinetic), (fine, _)] = [STEP, STEP / 2.0].map(missing);
         // Nothing may move at all.
         let second = is_of_second_order(coarse, fine, 1e-7 * kinetic + 1e-20);
-        // How large the error is depends on the motion: a loop that snaps through its stretched pose lost 2.4 %.
+        // The size of the error depends on the motion: a loop that snaps through its stretched pose lost 2.4 %.
         prop_assert!(second && coarse <= 0.1 * kinetic + 1e-20, "{coarse:e}, then {fine:e} of {kinetic:e} J");
         Ok(())
     });

@@ -37,7 +37,7 @@ pub struct Body {
     pub before: Option<usize>,
     /// The joint, on the body before and on this one.
     pub joint: [Vector; 2],
-    /// Where its springs and ties are.
+    /// Point of its springs and ties.
     pub end: Vector,
     /// Whether the joint lets it turn about z alone; in the plane all do.
     pub hinged: bool,
@@ -53,7 +53,7 @@ pub struct Body {
     pub drag: f64,
 }
 
-/// Between the ends of two bodies.
+/// A spring between the ends of two bodies.
 #[derive(Clone, Debug)]
 pub struct Spring {
     pub between: [usize; 2],
@@ -69,7 +69,7 @@ pub struct Tie {
 }
 
 impl Body {
-    /// Where one of its points is, and how fast.
+    /// Position and velocity of one of its points.
     fn at(&self, point: Vector) -> [Vector; 2] {
         let arm = self.attitude.turn(point);
         let spin = self.attitude.turn(self.omega);

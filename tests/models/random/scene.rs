@@ -8,7 +8,7 @@ use mbint::results::Bounds;
 use super::mechanism::Mechanism;
 use super::quaternion::{Quaternion, Vector, add};
 
-/// How a mechanism is put into the world and written down.
+/// Placement and notation of a mechanism.
 #[derive(Clone, Debug)]
 pub struct Scene {
     /// All is turned, then shifted.

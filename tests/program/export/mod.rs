@@ -320,7 +320,7 @@ simulation: {{ duration: DURATION, step: 1e-3, output_step: 0.02 }}
     }
 }
 
-/// A motion that does not reach its end is refused with the reason, where it was cut there without a word.
+/// A motion that does not reach its end is refused with the reason.
 #[test]
 fn motions_that_stop_are_refused() {
     let place = Place::new();

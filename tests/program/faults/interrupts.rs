@@ -52,7 +52,7 @@ fn what_is_finished_at_a_ctrl_c_is_written() {
     assert_eq!(status, Some(130), "{errors}");
     assert!(errors.contains("error: crank: interrupted"), "{errors}");
     let table = fs::read_to_string(place.path().join("out/bounds.csv")).unwrap();
-    // The scan of 40 000 samples was not done: where it stands, it is said to be unknown.
+    // The scan of 40 000 samples was not done: its columns, if any, are marked as unknown.
     let (heading, last) = (table.lines().next().unwrap(), table.lines().last().unwrap());
     assert!(heading.starts_with("t,angle.nominal"), "{heading}");
     assert!(last.starts_with("4,"), "{last}");
@@ -60,7 +60,7 @@ fn what_is_finished_at_a_ctrl_c_is_written() {
     assert!(fs::read_to_string(place.path().join("out/summary.json")).unwrap().contains("interrupted"));
 }
 
-/// Its reference alone takes seconds, and without it nothing was measured.
+/// The reference of a study of costs takes seconds, and without it nothing is measured.
 #[test]
 fn a_study_of_costs_ends_at_a_ctrl_c() {
     let place = Place::new();

@@ -54,7 +54,7 @@ fn control_characters_of_a_name_are_not_shown() {
     }
 }
 
-/// Nor of an argument that is quoted in a message about the command line.
+/// Control characters of an argument are not shown in a message about the command line.
 #[test]
 fn control_characters_of_arguments_are_not_shown() {
     let place = Place::new();

@@ -79,7 +79,7 @@ fn killed(times: u32) -> (u32, u32) {
             partial += 1
         }
         if !is_whole && kill % 4 == 0 {
-            // Whoever reads the results finds them whole.
+            // Readers of the results find them whole.
             place.run("report out", 0);
             fs::remove_file(out.join("report.html")).unwrap();
             let found = seen(&out);
@@ -186,7 +186,7 @@ fn more_files_than_may_be_open_are_written() {
     let done = command.output().unwrap();
     assert_eq!(done.status.code(), Some(0), "{}", String::from_utf8_lossy(&done.stderr));
     assert!(place.files("out").len() > 90);
-    // Where not even one can be opened, the system's own reason is named.
+    // If not even one can be opened, the system's own reason is named.
     for most in 3..16 {
         let run = format!("ulimit -n {most} && exec \"$MBINT\" run -q --threads 1 pushed.yaml -o few");
         let mut command = Command::new("sh");

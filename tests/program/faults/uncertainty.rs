@@ -28,7 +28,7 @@ bounds: {{ {bounds} }}
     ))
 }
 
-/// Every method gives the nominal motion, and says that it is good.
+/// Every method gives the nominal motion, without a flag.
 #[test]
 fn intervals_without_width_are_the_nominal_motion() {
     for request in

@@ -13,7 +13,7 @@ use serde_json::{Value, json};
 
 use super::place::Place;
 
-/// How long anything may take.
+/// Longest time of any answer.
 const PATIENCE: Duration = Duration::from_secs(60);
 
 /// A crank of length l and a rod of length 0.5 m with a slider on the x axis.
