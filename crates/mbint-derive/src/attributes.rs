@@ -1,10 +1,10 @@
-//! What stands in `#[element(…)]`, `#[quantity(…)]` and `#[key(…)]`.
+//! Contents of the attributes `#[element(…)]`, `#[quantity(…)]` and `#[key(…)]`.
 
 use proc_macro2::TokenStream;
 use quote::quote;
 use syn::{Attribute, Expr, Field, Lit, LitStr, Meta, Result, Token};
 
-/// Of a struct.
+/// Attributes of a struct.
 #[derive(Default)]
 pub struct Struct {
     pub doc: String,
@@ -56,24 +56,24 @@ pub enum Absent {
     Computed(LitStr, Expr),
 }
 
-/// Of a key.
+/// Attributes of a key.
 pub struct Key {
     pub doc: String,
     pub is_group: bool,
-    /// No key: the reader leaves its default there.
+    /// Whether the field is no key: the reader fills in its type's default.
     pub is_derived: bool,
-    /// A dimension from the fields before it, instead of the unit's.
+    /// Dimension computed from the fields before it, instead of that of the unit.
     pub dimension: Option<Expr>,
     pub unit: Option<LitStr>,
     pub absent: Absent,
-    /// What holds of an `Option` that is not there, in words.
+    /// Default of an absent `Option` key, in words.
     pub otherwise: Option<LitStr>,
-    /// A key before it that must be smaller.
+    /// An earlier key whose value must be smaller.
     pub above: Option<syn::Ident>,
     /// The name of a `grammar::Context`.
     pub context: &'static str,
     pub requirement: Option<TokenStream>,
-    /// The `grammar::Image` that is not the type's.
+    /// The `grammar::Image` that replaces the type's.
     pub image: Option<Expr>,
     /// Whether components are along the ground's axes.
     pub in_ground: bool,

@@ -136,7 +136,7 @@ fn keys(parts: &[Part]) -> TokenStream {
     each.collect()
 }
 
-/// What each key is to an instance that is mirrored or turned.
+/// Generates the image of each key in a mirrored or turned instance.
 fn images(parts: &[Part]) -> TokenStream {
     let each = parts.iter().map(|part| {
         let (name, ty, key) = (part.name(), &part.field.ty, &part.key);
@@ -171,7 +171,7 @@ fn read(about: &Struct, parts: &[Part]) -> TokenStream {
         let low_name = LitStr::new(&low.to_string(), low.span());
         Some(quote!(crate::grammar::ordered(reader, fields, #low_name, #low.as_ref(), #high, #ident.as_ref());))
     });
-    // Defaults that are computed may use the fields before them, which are there by then.
+    // Computed defaults may use earlier fields, which have their values by then.
     let there = parts.iter().map(|part| {
         let ident = &part.field.ident;
         match &part.key.absent {
@@ -199,7 +199,7 @@ fn read(about: &Struct, parts: &[Part]) -> TokenStream {
     }
 }
 
-/// What must hold of a key's number.
+/// Generates the requirement on a key's number.
 fn requirement(part: &Part) -> TokenStream {
     match &part.key.requirement {
         Some(requirement) => quote!(Some(#requirement)),
@@ -263,7 +263,7 @@ fn read_field(part: &Part) -> TokenStream {
     }
 }
 
-/// `formulas` or `references` of every field.
+/// Generates the calls of `formulas` or `references` for every field.
 fn visit(parts: &[Part], method: &str) -> TokenStream {
     let method = format_ident!("{method}");
     let each = parts.iter().map(|part| {

@@ -5,7 +5,7 @@
 //! #[derive(Element)]
 //! #[element(keyword = "servo", what = "a servo", equation = "…", source = "…", example = "{ … }", checked)]
 //! pub struct Servo {
-//!     #[group] on: OnJoint,                                          keys that stand beside the others
+//!     #[group] on: OnJoint,                                          keys in the same mapping as the others
 //!     /// What the coordinate should be.                             description of the key
 //!     #[quantity(unit = "m or rad", time)] target: Formula,          required
 //!     #[quantity(unit = "N*s/m or N*m*s/rad", default = 0)] derivative: Formula,
@@ -13,13 +13,13 @@
 //! }
 //! ```
 //!
-//! `equation` may be repeated; `short = "key"` lets a list stand for the mapping with that key alone. A struct without
-//! `keyword` is a mapping within an element where it says `what`, and else a group of keys. `checked` calls the
-//! struct's `grammar::Checked`. Of a key: `default = …`, `otherwise = "in words"` of an `Option`, `default_with("in
-//! words", expression of earlier keys)`, `constant`, `time` or `command` for what its formula may depend on,
-//! `dimension = …` where its unit depends on earlier keys, `above = key` of an earlier key that must be smaller,
+//! `equation` may be repeated; `short = "key"` lets a list replace the mapping with that key alone. A struct without
+//! `keyword` is a mapping within an element if it has `what`, otherwise a group of keys. `checked` calls the struct's
+//! `grammar::Checked`. A key may have `default = …`, `otherwise = "in words"` for an `Option`, `default_with("in
+//! words", expression of earlier keys)`, `constant`, `time` or `command` for the dependencies of its formula,
+//! `dimension = …` if its unit depends on earlier keys, `above = key` for an earlier key that must be smaller,
 //! `positive`, `nonnegative`, `nonzero` or `requires = REQUIREMENT`. A `#[derived]` field is no key; it is its type's
-//! default, and an `Option` of something that has `formulas()`.
+//! default, and an `Option` of a type that has `formulas()`.
 
 #![forbid(unsafe_code)]
 

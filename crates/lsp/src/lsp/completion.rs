@@ -1,4 +1,4 @@
-//! What may be typed at the cursor: keys, kinds of elements with snippets, words, names, members, functions and units.
+//! Completion at the cursor: keys, kinds of elements with snippets, words, names, members, functions and units.
 
 use std::path::Path;
 
@@ -23,7 +23,7 @@ use crate::model::InstanceKind;
 /// Sections whose keys are names of coordinates.
 const OF_COORDINATES: [&str; 2] = ["initial", "guess"];
 
-/// Proposals at a byte of a document.
+/// Proposals at byte `offset` of a document.
 pub fn complete(
     schema: &Schema,
     model: Option<&Model>,
@@ -58,7 +58,7 @@ pub fn complete(
             ..CompletionItem::default()
         }
     };
-    // An editor asks again, with more letters, where names were left out.
+    // The editor asks again, with more letters, if names were omitted.
     let is_incomplete = model.is_some_and(|model| model.names_known.len() > TUNING.most_of_a_kind);
     CompletionList { is_incomplete, items: items.into_iter().enumerate().map(edited).collect() }
 }
@@ -101,7 +101,7 @@ fn key(schema: &Schema, own: &KeyInfo, snippets: bool) -> Proposal {
     Proposal { insert: Some(insert), is_snippet: snippets && is_mapping, ..proposal.detail(detail) }
 }
 
-/// A kind of element with the keys of its example, perhaps within an entry that has a name.
+/// Proposal of a kind of element with the keys of its example, within an entry called `name` if that is given.
 fn element(schema: &Schema, own: &KeyInfo, name: Option<&str>, snippets: bool) -> Proposal {
     let proposal = Proposal::new(own.name, CompletionItemKind::CLASS).documentation(own.description);
     let mut field = 0;
@@ -118,7 +118,7 @@ fn element(schema: &Schema, own: &KeyInfo, name: Option<&str>, snippets: bool) -
     Proposal { insert: Some(insert), is_snippet: true, ..proposal.detail("snippet") }
 }
 
-/// An example as YAML in braces, each value a field.
+/// Formats an example as YAML in braces, each value a field of the snippet.
 fn snippet(value: &Value, field: &mut usize) -> String {
     match value {
         Value::Object(entries) if entries.is_empty() => "{}".to_owned(),
@@ -133,7 +133,7 @@ fn snippet(value: &Value, field: &mut usize) -> String {
         scalar => {
             *field += 1;
             let text = scalar.as_str().map_or_else(|| scalar.to_string(), str::to_owned);
-            // What would end the field, or the value in braces.
+            // Protects characters that would end the field, or the value in braces.
             let text = if text.contains(',') { format!("\"{text}\"") } else { text };
             let text = text.replace('\\', "\\\\").replace('$', "\\$").replace('}', "\\}");
             format!("${{{field}:{text}}}")
@@ -213,7 +213,8 @@ fn functions() -> Vec<Proposal> {
     functions.map(of).collect()
 }
 
-/// What stands before names where the cursor is: in an assembly, the name of one of its instances.
+/// Prefix of names at the cursor: in an assembly, the name of one of its instances with a dot, elsewhere nothing;
+/// `None` if the assembly has no known instance.
 fn prefix(model: &Model, path: &Path, at: &Context) -> Option<String> {
     let [Step::Key(section), Step::Key(assembly), ..] = at.path.as_slice() else { return Some(String::new()) };
     if section != "assemblies" {
@@ -226,7 +227,7 @@ fn prefix(model: &Model, path: &Path, at: &Context) -> Option<String> {
     if let Some(found) = model.known.as_deref().and_then(of) {
         return Some(found);
     }
-    // By the names whose definitions stand in the assembly.
+    // Otherwise from a name that is defined inside the assembly.
     let symbols = &model.names.symbols;
     let own = symbols.iter().find(|own| own.kind == NameKind::Assembly && own.name == *assembly)?;
     let whole = own.extents.iter().find(|extent| extent.file.as_path() == path)?;
@@ -242,7 +243,7 @@ fn prefix(model: &Model, path: &Path, at: &Context) -> Option<String> {
     inside.name.rsplit_once('.').map(|(instance, _)| format!("{instance}."))
 }
 
-/// Names of some kinds, as they are written where the cursor is.
+/// Proposals of names of these kinds, as they are written at the cursor.
 fn names(model: Option<&Model>, path: &Path, at: &Context, kinds: &[NameKind]) -> Vec<Proposal> {
     let Some(model) = model else { return Vec::new() };
     let is_global = kinds.iter().all(|kind| matches!(kind, NameKind::Assembly | NameKind::Scene));
@@ -267,7 +268,7 @@ fn names(model: Option<&Model>, path: &Path, at: &Context, kinds: &[NameKind]) -
                 *kind == NameKind::Instance && name.strip_prefix(own.as_str()).is_some_and(|rest| rest.starts_with('.'))
             })
         {
-            // Parts of an instance are its members.
+            // Parts of an instance are proposed as its members.
             continue;
         }
         counts[order] += 1;

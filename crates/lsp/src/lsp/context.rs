@@ -1,5 +1,5 @@
-//! Surroundings of a cursor in a model's text: keys around it, and whether a key or a value stands there. Half-typed
-//! texts have no tree, so that this reads lines: indentation, braces, brackets and quotes up to the cursor.
+//! Surroundings of a cursor in a model's text: keys around it, and whether it is in a key or a value. Half-typed texts
+//! have no tree, so this module reads lines: indentation, braces, brackets and quotes up to the cursor.
 
 use std::ops::Range;
 
@@ -12,7 +12,7 @@ pub enum Step {
     Item,
 }
 
-/// What stands at the cursor.
+/// Kind of text at the cursor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Slot {
     /// A key.
@@ -26,26 +26,26 @@ pub enum Slot {
 /// The surroundings of a cursor.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Context {
-    /// Steps from the whole to the mapping that the key is in, or to the value.
+    /// Steps from the root to the mapping of the key, or to the value.
     pub path: Vec<Step>,
-    /// Kind of what stands there.
+    /// Kind of text at the cursor.
     pub slot: Slot,
     /// Bytes of the dotted word before the cursor.
     pub word: Range<usize>,
-    /// What stands before the last dot of the word: `crank.B` of `crank.B.v`.
+    /// Part of the word before its last dot: `crank.B` of `crank.B.v`.
     pub owner: String,
-    /// What stands behind it.
+    /// Part of the word after it.
     pub typed: String,
     /// Bytes of the value, or of the key, up to the cursor.
     pub written: Range<usize>,
-    /// Keys that stand in the same mapping before the cursor.
+    /// Keys of the same mapping before the cursor.
     pub siblings: Vec<String>,
 }
 
 /// A mapping or a list around the cursor.
 #[derive(Debug)]
 struct Frame {
-    /// Column of a block; none of braces and brackets.
+    /// Column of a block; `None` for braces and brackets.
     indent: Option<usize>,
     is_list: bool,
     /// The key whose value is being read.
@@ -69,7 +69,7 @@ impl Frame {
 pub fn context(text: &str, offset: usize) -> Context {
     let before = &text[..offset];
     let mut frames = vec![Frame::new(Some(0), false)];
-    // Bytes of the piece that is being read.
+    // First byte of the piece that is being read.
     let mut start = 0;
     let mut is_comment = false;
     let mut line_start = 0;
@@ -118,7 +118,8 @@ pub fn context(text: &str, offset: usize) -> Context {
     Context { path, slot, word, owner, typed, written, siblings }
 }
 
-/// Closes blocks that a line in a column ends: of the block with that column, the key.
+/// Closes the blocks that a line in column `indent` ends, and the key of the block in that column; opens the block that
+/// a deeper line begins.
 fn leave(frames: &mut Vec<Frame>, indent: usize) {
     while frames.len() > 1 && frames.last().is_some_and(|own| own.indent.is_some_and(|column| column > indent)) {
         frames.pop();
@@ -131,7 +132,7 @@ fn leave(frames: &mut Vec<Frame>, indent: usize) {
     }
 }
 
-/// Reads a line; where the piece that is open at its end begins, and whether a comment is open there.
+/// Reads a line. Returns the first byte of the piece that is open at its end, and whether a comment is open there.
 fn read_line(line: &str, offset: usize, frames: &mut Vec<Frame>, open: usize) -> (usize, bool) {
     let content = line.trim_end_matches(['\n', '\r']);
     let mut at = 0;

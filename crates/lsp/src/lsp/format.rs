@@ -1,5 +1,5 @@
-//! Formatting: indentation by two spaces, a space where YAML wants none but people do, no space at ends of lines, no
-//! more than one empty line. Only white space changes, so that comments stay, and columns that people have aligned.
+//! Formatting: indentation by two spaces, spaces within braces and after commas and colons, no trailing spaces, at most
+//! one empty line in a row. Only white space changes, so comments stay, and so do aligned columns.
 
 use std::ops::Range;
 
@@ -8,10 +8,10 @@ use super::text::Text;
 use crate::syntax::Diagnostics;
 use crate::syntax::yaml::{self, Node, Value};
 
-/// Columns of a level.
+/// Columns per level of indentation.
 const INDENT: usize = 2;
 
-/// The formatted text; `None` where it is not YAML, or would not mean the same.
+/// The formatted text; `None` if it is not YAML, or if its meaning would change.
 pub fn formatted(text: &str) -> Option<String> {
     let before = parsed(text)?;
     let spaced = with_spaces(text, &before);
@@ -22,7 +22,7 @@ pub fn formatted(text: &str) -> Option<String> {
     (same(&before, &after) && letters(text) == letters(&laid)).then_some(laid)
 }
 
-/// The tree of a text without errors.
+/// The tree of a text; `None` if the text has errors.
 fn parsed(text: &str) -> Option<Node> {
     let mut found = Diagnostics::new("", text);
     yaml::parse(text, &mut found).filter(|_| !found.has_errors())
@@ -44,7 +44,7 @@ fn is_flow(text: &str, node: &Node) -> bool {
     text.get(node.span.clone()).is_some_and(|text| text.starts_with(['{', '[']))
 }
 
-/// The text with spaces within braces, behind commas and behind the colons of keys.
+/// The text with spaces within braces, after commas and after the colons of keys.
 fn with_spaces(text: &str, root: &Node) -> String {
     let mut gaps: Vec<(Range<usize>, String)> = Vec::new();
     add_gaps(text, root, &mut gaps);
@@ -64,7 +64,7 @@ fn with_spaces(text: &str, root: &Node) -> String {
 }
 
 fn add_gaps(text: &str, node: &Node, gaps: &mut Vec<(Range<usize>, String)>) {
-    // A gap has white space and one of these. Comments and line ends stay as they are.
+    // A gap has white space and at most one comma or colon. Gaps with comments or line ends stay as they are.
     let mut add = |gap: Range<usize>, pad: bool| {
         let Some(written) = text.get(gap.clone()) else { return };
         let mark = written.trim();
@@ -114,7 +114,7 @@ enum Line {
     Column(usize),
     /// Moves with the line above that has a column.
     Follows,
-    /// Within a text of several lines: moves as well, and keeps its end.
+    /// Within a text of several lines: moves as well, and retains its trailing spaces.
     Text,
 }
 
@@ -132,7 +132,7 @@ fn indented(text: &Text, root: &Node) -> String {
         match lines[number] {
             Line::Column(new) => moved = new as isize - column as isize,
             Line::Follows if is_comment => {
-                // A comment stands as the line below it does.
+                // A comment in the column of the line below moves with that line.
                 let below = (number + 1..text.line_count()).find(|&below| {
                     let own = source[text.line(below)].trim();
                     !own.is_empty() && !own.starts_with('#')
@@ -166,7 +166,7 @@ fn indented(text: &Text, root: &Node) -> String {
     found
 }
 
-/// Gives lines on which keys and items of blocks begin their columns.
+/// Sets the columns of lines on which keys and items of blocks begin.
 fn lay(text: &Text, node: &Node, column: usize, lines: &mut [Line]) {
     let source = text.as_str();
     let mut place = |offset: usize, column: usize, is_item: bool| {

@@ -1,4 +1,4 @@
-//! What an editor shows of what the pointer is on: names, formulas, keys, words, units and functions.
+//! Hover texts for names, formulas, keys, words, units and functions under the pointer.
 
 use std::ops::Range;
 use std::path::Path;
@@ -16,7 +16,7 @@ use crate::elements::effects::EffectKind;
 use crate::grammar::mentions::{NameKind, ReadFormula};
 use crate::grammar::{ElementDocs, reference};
 
-/// Text in Markdown, and the bytes that it is of.
+/// Text in Markdown, and the bytes of the document that it describes.
 pub struct Hover {
     /// Markdown.
     pub text: String,
@@ -24,7 +24,7 @@ pub struct Hover {
     pub span: Range<usize>,
 }
 
-/// What stands at a byte of a document; `model` is the one that it belongs to.
+/// Hover text at byte `offset` of a document; `model` is the model that the document belongs to.
 pub fn hover(schema: &Schema, model: Option<&Model>, path: &Path, text: &Text, offset: usize) -> Option<Hover> {
     let word = word_at(text.as_str(), offset);
     let at = context(text.as_str(), word.end);
@@ -71,7 +71,7 @@ fn name(model: &Model, path: &Path, text: &Text, offset: usize, word: &Range<usi
     if symbol.kind == NameKind::Parameter {
         lines.extend(model.known.as_ref().and_then(|known| Values::of(known).of_parameter(&symbol.name)));
     }
-    // The whole name may say more than the part: `crank.B.vx`.
+    // The whole word may mean more than its part with a definition: `crank.B.vx`.
     let written = text.as_str().get(word.clone()).unwrap_or_default();
     let full = full_name(model, path, word, written);
     let motion = full.as_deref().filter(|full| *full != symbol.name).and_then(|full| member(model, full));
@@ -118,7 +118,7 @@ pub fn kind_in_words(kind: NameKind) -> &'static str {
     }
 }
 
-/// The full name that a word of a document is part of the text of.
+/// The full name of the mention at the bytes `word` of a document.
 fn full_name(model: &Model, path: &Path, word: &Range<usize>, written: &str) -> Option<String> {
     let sources = &model.opened.reading.diagnostics.sources;
     let is_here = |span: &crate::grammar::Span| {
@@ -142,7 +142,7 @@ fn member(model: &Model, full: &str) -> Option<String> {
     Some(format!("{}{unit}", meaning.map_or_else(|| "a number".to_owned(), |docs| docs.meaning)))
 }
 
-/// The line of a definition.
+/// The first line of a definition, clipped to 120 characters.
 fn definition_line(model: &Model, extents: &[super::names::Location], file: &Path) -> Option<String> {
     let extent = extents.iter().find(|own| own.file.as_path() == file)?;
     let mut sources = model.opened.reading.diagnostics.sources.all();
@@ -160,7 +160,7 @@ fn definition_line(model: &Model, extents: &[super::names::Location], file: &Pat
 fn formula(model: &Model, path: &Path, offset: usize, least: usize) -> Option<Hover> {
     let known = model.known.as_ref()?;
     let sources = &model.opened.reading.diagnostics.sources;
-    // Bytes of the document that a span is, if the pointer is on them.
+    // Bytes of a span in the document, if the pointer is on them.
     let here = |span: Range<usize>| -> Option<Range<usize>> {
         let (source, span) = sources.locate(&span)?;
         (Path::new(&source.name) == path && span.contains(&offset)).then_some(span)
@@ -193,7 +193,7 @@ fn formula(model: &Model, path: &Path, offset: usize, least: usize) -> Option<Ho
     Some(Hover { text: format!("{value}\n\n{what}"), span })
 }
 
-/// A function or, behind a number, a unit.
+/// Text about a function or, if the value may be a number, a unit.
 fn function_or_unit(word: &str, is_number: bool) -> Option<String> {
     let functions = reference::functions();
     let function = functions.iter().find(|own| own.function.split('(').next() == Some(word));
@@ -206,7 +206,7 @@ fn function_or_unit(word: &str, is_number: bool) -> Option<String> {
     Some(format!("unit **{}** of {}: {}{si}", unit.unit, unit.quantity, super::values::shown(unit.value)))
 }
 
-/// A key or a word of the language.
+/// Text about a key or a word of the language.
 fn key_or_word(schema: &Schema, at: &Context, text: &Text, word: &Range<usize>) -> Option<String> {
     let written = text.as_str().get(word.clone())?;
     if at.slot == Slot::Value {
@@ -223,7 +223,7 @@ fn key_or_word(schema: &Schema, at: &Context, text: &Text, word: &Range<usize>) 
     Some(found)
 }
 
-/// Equation, source and example of an element.
+/// Equations and example of an element.
 fn element(path: &[Step], keyword: &str) -> Option<String> {
     let section = path.iter().rev().find_map(|step| match step {
         Step::Key(key) if key == "joints" || key == "effects" => Some(key.as_str()),

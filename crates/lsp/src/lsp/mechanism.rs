@@ -1,4 +1,4 @@
-//! Errors of mechanisms as a whole, which are found beside the server's answers: equations are built and assembled.
+//! Errors of mechanisms as a whole: a thread next to the server's loop builds and assembles their equations.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -15,9 +15,9 @@ use crate::syntax::{Code, Coded};
 pub struct Question {
     /// Its file.
     pub path: PathBuf,
-    /// Which reading of it.
+    /// Number of the reading.
     pub reading: u64,
-    /// Its scenes with their names; itself under no name where it has none.
+    /// Its scenes with their names; the model itself without a name if it has no scenes.
     pub scenes: Vec<(Option<String>, Arc<Description>)>,
 }
 
@@ -25,7 +25,7 @@ pub struct Question {
 pub struct Answer {
     /// The model's file.
     pub path: PathBuf,
-    /// Which reading of it.
+    /// Number of the reading.
     pub reading: u64,
     /// The first error.
     pub error: Option<MechanismError>,
@@ -40,7 +40,8 @@ pub struct MechanismError {
     pub code: Option<Code>,
 }
 
-/// Starts to examine models, the latest reading of each; gives each answer to `answer`. Ends with the questions.
+/// Starts a thread that examines the latest reading of each model and passes each answer to `answer`. It ends when the
+/// returned sender is dropped.
 pub fn examine(answer: impl Fn(Answer) + Send + 'static) -> Sender<Question> {
     let (questions, received): (Sender<Question>, Receiver<Question>) = channel();
     thread::spawn(move || {

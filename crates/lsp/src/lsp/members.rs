@@ -1,5 +1,5 @@
-//! Names behind a dot: points of a body, parts of its motion, reactions of a joint, what an effect measures, parts of
-//! an instance; each with its unit.
+//! Names after a dot: points of a body, parts of its motion, reactions of a joint, measures of an effect, parts of an
+//! instance; each with its unit.
 
 use lsp_types::CompletionItemKind;
 
@@ -11,7 +11,7 @@ use crate::grammar::mentions::NameKind;
 use crate::grammar::reference;
 use crate::grammar::{Symbol, SymbolTable};
 
-/// Members of an owner, each with the owner before it; `prefix` stands before names in the model.
+/// Members of an owner, each with the owner before it; full names in the model begin with `prefix`.
 pub fn members(model: &Model, prefix: &str, owner: &str) -> Vec<Proposal> {
     if owner.is_empty() {
         return Vec::new();
@@ -29,7 +29,7 @@ pub fn members(model: &Model, prefix: &str, owner: &str) -> Vec<Proposal> {
     for (name, kind) in &model.names_known {
         let Some(member) = within(name) else { continue };
         let item = if *kind == NameKind::Point { CompletionItemKind::FIELD } else { CompletionItemKind::MODULE };
-        // Of a part of an instance, its points come with its own members.
+        // Points of a part of an instance are among the part's own members.
         if *kind != NameKind::Point || !member.contains('.') {
             add(&member, item, kind_in_words(*kind).to_owned(), String::new());
         }

@@ -1,4 +1,4 @@
-//! The server and its answers; `serve` and `attend` are the entrances.
+//! The server and its answers; `serve` and `attend` are the entry points.
 
 mod completion;
 mod context;

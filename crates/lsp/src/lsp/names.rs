@@ -1,7 +1,7 @@
 //! Names of a model: where each is defined and where it is used, in all its files.
 //!
-//! Definitions with one full name are one symbol, as the joint of a model and that of a scene in its place; so are
-//! definitions at one location, as the body of an assembly in all its instances.
+//! Definitions with the same full name are one symbol, such as a joint of the model and the joint of a scene that
+//! replaces it; so are definitions at the same location, such as a body of an assembly in all its instances.
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -13,19 +13,19 @@ use crate::grammar::{Span, Symbol};
 use crate::model::{Description, Opened};
 use crate::syntax::source::Sources;
 
-/// A place in a file.
+/// A location in a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Location {
     /// The file.
     pub file: Rc<PathBuf>,
-    /// Bytes in it.
+    /// Bytes in the file.
     pub span: Range<usize>,
 }
 
-/// Where a symbol stands.
+/// An occurrence of a symbol.
 #[derive(Clone, Debug)]
 pub struct Occurrence {
-    /// Where.
+    /// Its location.
     pub at: Location,
     /// Index of the symbol.
     pub symbol: usize,
@@ -38,7 +38,7 @@ pub struct Occurrence {
 pub struct Named {
     /// Kind of the named thing.
     pub kind: NameKind,
-    /// Its full name; the first of those of several instances.
+    /// Its full name; with several instances, the first of their names.
     pub name: String,
     /// The definitions, keys with their values.
     pub extents: Vec<Location>,
@@ -49,7 +49,7 @@ pub struct Named {
 pub struct Names {
     /// Symbols.
     pub symbols: Vec<Named>,
-    /// Where they stand, by file and offset; nothing twice.
+    /// Their occurrences, by file and offset, without duplicates.
     pub occurrences: Vec<Occurrence>,
     /// Symbols by full name.
     by_name: HashMap<String, Vec<usize>>,
@@ -75,13 +75,15 @@ impl Files {
 }
 
 impl Names {
-    /// Of a model; `known` is the model as it could be read last, which tells names of several things apart.
+    /// Collects the names of a model; `known` is the last model that could be read, which distinguishes things of the
+    /// same
+    /// name.
     pub fn of(opened: &Opened, known: Option<&Description>) -> Self {
         let (sources, mut files) = (&opened.reading.diagnostics.sources, Files::default());
         let mut names = Self::default();
-        // By the file, of which there is one object, and the offset.
+        // Keyed by the file, which is one object, and the offset.
         let mut by_location: HashMap<(*const PathBuf, usize), usize> = HashMap::new();
-        // A symbol that turns out to be another one stands for that.
+        // For each symbol the one that it is the same as; itself if there is none.
         let mut same: Vec<usize> = Vec::new();
         for Definition { kind, name, span, extent } in &opened.mentions.definitions {
             let (Some(at), Some(extent)) = (files.locate(sources, span), files.locate(sources, extent)) else {
@@ -136,7 +138,7 @@ impl Names {
         names
     }
 
-    /// Notes a name where it is written. In a text of several lines only the text is known: names are words of it.
+    /// Records the locations of a name. A text with line breaks, escapes or quotes is searched for the name as a word.
     fn mention(&mut self, mention: &Mention, sources: &Sources, files: &mut Files, known: Option<&Description>) {
         let Some(at) = files.locate(sources, &mention.span) else { return };
         let Some(written) = sources.locate(&mention.span).map(|(source, span)| &source.text[span]) else { return };
@@ -157,7 +159,7 @@ impl Names {
         }
     }
 
-    /// Notes each part of a name that has a definition; the text of the name, or of the end of it, ends at a byte.
+    /// Records each part of a name that has a definition; `text`, the name or its last parts, ends at byte `end`.
     fn parts(
         &mut self,
         mention: &Mention,
@@ -168,7 +170,7 @@ impl Names {
     ) {
         let mut written: Vec<&str> = text.split('.').collect();
         let mut prefix = mention.name.as_str();
-        // From the last part to the first, as long as they are written so.
+        // From the last part to the first, as long as the text agrees with the name.
         while let Some(part) = written.pop() {
             if prefix.rsplit('.').next() != Some(part) {
                 return;
@@ -183,7 +185,7 @@ impl Names {
         }
     }
 
-    /// The symbol that a name, which is the beginning of a mention's, stands for.
+    /// The symbol of a name, which is the beginning of the mention's name.
     fn meant(&self, name: &str, mention: &Mention, known: Option<&Description>) -> Option<usize> {
         let all = self.by_name.get(name)?;
         let of_kind = |kind: NameKind| all.iter().copied().find(|&symbol| self.symbols[symbol].kind == kind);
@@ -206,7 +208,7 @@ impl Names {
         mention.kind.and_then(of_kind).or_else(|| of_kind(by_symbol()?)).or_else(|| all.first().copied())
     }
 
-    /// What stands at a byte of a file.
+    /// The occurrence at a byte of a file; the shortest of several.
     pub fn at(&self, file: &std::path::Path, offset: usize) -> Option<&Occurrence> {
         let touches = |own: &&Occurrence| {
             own.at.file.as_path() == file && own.at.span.start <= offset && offset <= own.at.span.end
@@ -214,7 +216,7 @@ impl Names {
         self.occurrences.iter().filter(touches).min_by_key(|own| own.at.span.len())
     }
 
-    /// Where a symbol stands.
+    /// Occurrences of a symbol.
     pub fn of_symbol(&self, symbol: usize) -> impl Iterator<Item = &Occurrence> {
         self.occurrences.iter().filter(move |own| own.symbol == symbol)
     }
@@ -231,7 +233,7 @@ impl Names {
     }
 }
 
-/// Where a name stands as a word of a text.
+/// Offsets at which a name is a word of a text, each with the name.
 fn words<'n>(text: &str, name: &'n str) -> Vec<(usize, &'n str)> {
     let is_part = |c: char| c.is_alphanumeric() || matches!(c, '_' | '.');
     let is_word = |start: &usize| {
@@ -240,7 +242,7 @@ fn words<'n>(text: &str, name: &'n str) -> Vec<(usize, &'n str)> {
     text.match_indices(name).map(|(start, _)| start).filter(is_word).map(|start| (start, name)).collect()
 }
 
-/// The symbol that one stands for.
+/// The symbol that a symbol is the same as, in the end.
 fn root(same: &[usize], mut symbol: usize) -> usize {
     while same[symbol] != symbol {
         symbol = same[symbol];

@@ -19,15 +19,15 @@ pub enum RenameError {
     /// There is no name at the cursor.
     #[error("there is no name of the model here")]
     NoName,
-    /// The new name is none.
+    /// The new name is not a valid name.
     #[error("`{0}` cannot be a name: letters, digits and `_`, a letter first")]
     NotAName(String),
-    /// The name is made by an index, or stands in an escaped text.
+    /// The name is made with an index, or is in an escaped text.
     #[error("`{name}` is written as `{written}` in line {line}: change it by hand")]
     WrittenOtherwise {
         /// The name.
         name: String,
-        /// The text in its place.
+        /// The text at its location.
         written: String,
         /// From 1.
         line: usize,
@@ -42,12 +42,12 @@ pub enum RenameError {
     },
 }
 
-/// Where what stands at a byte is defined.
+/// Definitions of the symbol at a byte.
 pub fn definitions(workspace: &Workspace, model: &Model, path: &Path, offset: usize) -> Vec<Location> {
     locations(workspace, model, path, offset, |own| own.is_definition)
 }
 
-/// Where what stands at a byte is used, and perhaps where it is defined.
+/// Uses of the symbol at a byte, and its definitions if `with_definition`.
 pub fn references(
     workspace: &Workspace,
     model: &Model,
@@ -87,10 +87,10 @@ pub fn name_at<'m>(model: &'m Model, path: &Path, text: &Text, offset: usize) ->
     Some((name, text.range(&found.at.span)))
 }
 
-/// Changes that give what stands at a byte another name, in all files of the model.
+/// Changes that rename the symbol at a byte, in all files of the model.
 ///
 /// # Errors
-/// Where there is no name, or the model would have errors with the new one.
+/// If there is no name, it is written in another way, the new name is not valid, or a model would get errors with it.
 pub fn rename(
     workspace: &Workspace,
     model: &Model,
@@ -143,7 +143,7 @@ pub fn rename(
     Ok(edit_of(changes.collect::<Vec<_>>()))
 }
 
-/// Checks that no model of the workspace gets an error that it does not have.
+/// Checks that the changes give no model of the workspace more errors than it has.
 fn still_reads(
     workspace: &Workspace,
     model: &Model,

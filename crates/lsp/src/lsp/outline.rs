@@ -6,12 +6,12 @@ use super::text::Text;
 use crate::syntax::Diagnostics;
 use crate::syntax::yaml::{self, Entry, Node, Value};
 
-/// The tree of a text; `None` where it is not YAML.
+/// The tree of a text; `None` if it is not YAML.
 pub fn tree(text: &Text) -> Option<Node> {
     yaml::parse(text.as_str(), &mut Diagnostics::new("", text.as_str()))
 }
 
-/// What entries of the outline are.
+/// Kind of entries of the outline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Level<'t> {
     /// Sections of a model, an assembly or a scene.
@@ -22,7 +22,7 @@ enum Level<'t> {
     Points,
 }
 
-/// Sections with their names, of bodies with their points.
+/// Sections with their names, and bodies with their points.
 pub fn outline(text: &Text) -> Vec<DocumentSymbol> {
     tree(text).map_or_else(Vec::new, |root| symbols(text, &root, Level::Sections))
 }

@@ -1,4 +1,4 @@
-//! Diagnostics of models as the protocol has them, and the fixes that they propose.
+//! Diagnostics of models in the form of the protocol, and the fixes that they propose.
 
 use std::collections::{BTreeMap, HashSet};
 use std::path::{Path, PathBuf};
@@ -20,7 +20,8 @@ use crate::syntax::suggest;
 /// The name under which editors show diagnostics.
 const SOURCE: &str = "mbint";
 
-/// Diagnostics of a model by file; also of files without any. `of_mechanism` is the error of the mechanism as a whole.
+/// Diagnostics of a model by file, empty for files without any. `of_mechanism` is the error of the mechanism as a
+/// whole.
 pub fn of_model(
     workspace: &Workspace,
     model: &Model,
@@ -66,7 +67,7 @@ pub fn of_model(
             related_information: (!related.is_empty()).then_some(related),
             ..Diagnostic::default()
         };
-        // The same in several instances is one, whatever their names.
+        // The same diagnostic in several instances counts once, whatever their names.
         let instance = own.span.as_ref().and_then(|span| sources.within(span)).map(|within| within.instance.as_str());
         let message = instance.map_or_else(|| own.message.clone(), |name| own.message.replace(name, ""));
         if said.insert((path.clone(), range.start.line, range.start.character, message)) {
@@ -87,7 +88,7 @@ pub fn of_model(
     found
 }
 
-/// Where a code is explained.
+/// Address of the page that explains a code.
 fn page_of(code: Code) -> Option<CodeDescription> {
     Some(CodeDescription { href: code.href().parse().ok()? })
 }
@@ -124,7 +125,7 @@ pub fn fixes(workspace: &Workspace, model: &Model, path: &Path, range: Range) ->
     actions
 }
 
-/// The bytes that a proposed text replaces, and the text. Quotes stay; a text to be quoted is found in the line.
+/// The bytes that a proposed text replaces, and the text. Quotes stay; a text to be quoted is searched for in the line.
 fn replaced(text: &str, span: &Span, new: &str) -> Option<(Span, String)> {
     let written = text.get(span.clone())?;
     if let Some(unquoted) = new.strip_prefix('"').and_then(|rest| rest.strip_suffix('"')) {
@@ -144,7 +145,7 @@ pub fn edit_of(changes: impl IntoIterator<Item = (Uri, Vec<TextEdit>)>) -> Works
     WorkspaceEdit { changes: Some(changes.into_iter().collect()), ..WorkspaceEdit::default() }
 }
 
-/// The address of a file, as the editor writes it where it is open.
+/// The address of a file, as the editor writes it if the file is open.
 pub fn address(workspace: &Workspace, path: &Path) -> Option<Uri> {
     workspace.documents.get(path).map(|own| own.uri.clone()).or_else(|| uri_of(path))
 }

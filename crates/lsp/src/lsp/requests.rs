@@ -24,7 +24,7 @@ use super::schema::Schema;
 use super::uri::path_of;
 use super::workspace::{Document, Workspace};
 
-/// All that answers are made of.
+/// Data from which answers are made.
 pub struct Answers<'a> {
     /// Documents and their models.
     pub workspace: &'a Workspace,
@@ -40,7 +40,7 @@ impl Answers<'_> {
     /// The answer to a request.
     ///
     /// # Errors
-    /// For a method that is not known, parameters that are not its, or a name that cannot be given.
+    /// For an unknown method, parameters of another form, or a name that cannot be given.
     pub fn answer(&self, method: &str, params: Value) -> Answer {
         match method {
             protocol::Completion::METHOD => of(params, |params| self.completion(params)),
@@ -153,7 +153,7 @@ impl Answers<'_> {
     }
 }
 
-/// The path of a document; of one that is no file, a path in the working directory that is not there.
+/// The path of a document; for one that is no file, a path in the working directory that does not exist.
 pub fn path_of_document(uri: &Uri) -> PathBuf {
     path_of(uri).unwrap_or_else(|| {
         let name: String = uri.as_str().chars().map(|c| if c.is_alphanumeric() { c } else { '_' }).collect();
@@ -174,7 +174,7 @@ fn written(answer: impl Serialize) -> Value {
     serde_json::to_value(answer).unwrap_or_default()
 }
 
-/// An error as the protocol has it.
+/// An error in the form of the protocol.
 pub fn error(code: ErrorCode, message: String) -> ResponseError {
     ResponseError { code: code as i32, message, data: None }
 }

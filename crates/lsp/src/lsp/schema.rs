@@ -1,4 +1,4 @@
-//! The JSON Schema of model files, walked along the keys of a text: keys and words that may stand there, with their
+//! The JSON Schema of model files, walked along the keys of a text: the keys and words allowed there, with their
 //! documentation.
 
 use serde_json::Value;
@@ -9,16 +9,16 @@ use super::tuning::TUNING;
 /// The schema.
 pub struct Schema(Value);
 
-/// A key that may stand somewhere.
+/// A key that is allowed in a mapping.
 #[derive(Clone, Debug)]
 pub struct KeyInfo<'s> {
     /// As it is written.
     pub name: &'s str,
     /// Description with unit and default.
     pub description: &'s str,
-    /// Whether it must be there.
+    /// Whether it is required.
     pub is_required: bool,
-    /// What its value may be.
+    /// Schema of its value.
     pub value: &'s Value,
 }
 
@@ -32,13 +32,13 @@ pub struct WordInfo<'s> {
 }
 
 impl Schema {
-    /// Of this version of the language.
+    /// The schema of this version of the language.
     pub fn new() -> Self {
         // The schema is written as JSON: reading it again cannot fail.
         Self(serde_json::from_str(&crate::model::schema()).unwrap_or_default())
     }
 
-    /// All that a value along a path may be.
+    /// All schemas of the value at a path.
     pub fn at(&self, path: &[Step]) -> Vec<&Value> {
         let mut found = self.choices(&self.0);
         for step in path {
@@ -57,7 +57,7 @@ impl Schema {
         found
     }
 
-    /// A schema with all that it refers to or chooses from.
+    /// A schema with all schemas that it refers to or chooses from.
     fn choices<'s>(&'s self, schema: &'s Value) -> Vec<&'s Value> {
         let mut found = Vec::new();
         self.add_choices(schema, TUNING.depth_of_schema, &mut found);
@@ -78,7 +78,7 @@ impl Schema {
         }
     }
 
-    /// Keys of the mapping along a path.
+    /// Keys of the mapping at a path.
     pub fn keys(&self, path: &[Step]) -> Vec<KeyInfo<'_>> {
         let mut keys: Vec<KeyInfo> = Vec::new();
         for schema in self.at(path) {
@@ -94,7 +94,7 @@ impl Schema {
         keys
     }
 
-    /// Words that the value along a path may be.
+    /// Words that the value at a path may be.
     pub fn words(&self, path: &[Step]) -> Vec<WordInfo<'_>> {
         let mut words: Vec<WordInfo> = Vec::new();
         for schema in self.at(path) {
@@ -108,12 +108,12 @@ impl Schema {
         words
     }
 
-    /// Whether the value along a path may be a number or a formula.
+    /// Whether the value at a path may be a number or a formula.
     pub fn is_number(&self, path: &[Step]) -> bool {
         self.at(path).iter().any(|schema| schema.get("type").and_then(Value::as_str) == Some("number"))
     }
 
-    /// Whether the value along a path may be a text of one's own, such as a name.
+    /// Whether the value at a path may be any text, such as a name.
     pub fn is_text(&self, path: &[Step]) -> bool {
         let is_text = |schema: &&Value| {
             let is_string = schema.get("type").and_then(Value::as_str) == Some("string");
@@ -122,14 +122,14 @@ impl Schema {
         self.at(path).iter().any(is_text)
     }
 
-    /// Whether keys of the mapping along a path are names of one's own.
+    /// Whether keys of the mapping at a path may be any names.
     pub fn has_free_keys(&self, path: &[Step]) -> bool {
         self.at(path).iter().any(|schema| schema.get("additionalProperties").is_some_and(Value::is_object))
     }
 
-    /// Kinds of which a value is one: elements, with their descriptions and values.
+    /// Kinds of which the value at a path is one: elements, with their descriptions and schemas.
     pub fn kinds(&self, path: &[Step]) -> Vec<KeyInfo<'_>> {
-        // One kind, and perhaps how often it is there.
+        // One kind, and perhaps its repetition.
         let is_choice = |schema: &&&Value| {
             let is_one = schema.get("minProperties").and_then(Value::as_u64) == Some(1);
             is_one && schema.get("maxProperties").is_some()
@@ -142,13 +142,13 @@ impl Schema {
             .collect()
     }
 
-    /// Description of what stands along a path.
+    /// Description of the key at a path.
     pub fn description(&self, path: &[Step]) -> Option<&str> {
         let [before @ .., Step::Key(key)] = path else { return None };
         self.keys(before).into_iter().find(|own| own.name == key).map(|own| own.description)
     }
 
-    /// An example of a value: one that the schema has, else its required keys; short where it may be.
+    /// The first example in the schemas of a value.
     pub fn example<'s>(&'s self, value: &'s Value) -> Option<&'s Value> {
         let choices = self.choices(value);
         choices.iter().find_map(|schema| schema.get("examples")?.get(0))

@@ -1,4 +1,4 @@
-//! The server's loop: what an editor says, one message after the other.
+//! The server's loop: handles an editor's messages one after the other.
 //!
 //! Texts are read anew when the editor pauses or asks; so a burst of keystrokes costs one reading.
 
@@ -37,12 +37,12 @@ pub enum ServerError {
     /// Messages could not be written or read.
     #[error("messages cannot be exchanged: {0}")]
     Io(#[from] io::Error),
-    /// What the editor says of itself cannot be understood.
+    /// The editor's capabilities cannot be read.
     #[error("the editor's capabilities cannot be read: {0}")]
     Capabilities(#[from] serde_json::Error),
 }
 
-/// What the loop waits for.
+/// An event that the loop waits for.
 enum Event {
     Message(Message),
     Mechanism(mechanism::Answer),
@@ -50,11 +50,11 @@ enum Event {
     End,
 }
 
-/// Serves an editor on standard input and output until it says that it ends; `root` is a folder whose files models may
-/// name, beside those of their own folders.
+/// Serves an editor on standard input and output until it announces its exit; `root` is a folder whose files models may
+/// name, in addition to those of their own folders.
 ///
 /// # Errors
-/// Where the protocol is not followed.
+/// If the protocol is not followed.
 pub fn serve(root: Option<PathBuf>) -> Result<(), ServerError> {
     let (connection, threads) = Connection::stdio();
     if attend(&connection, root)? {
@@ -64,11 +64,12 @@ pub fn serve(root: Option<PathBuf>) -> Result<(), ServerError> {
     Ok(())
 }
 
-/// Serves the editor at the other end of a connection, as [`serve`] does. Returns whether it said that it ends; if not,
+/// Serves the editor at the other end of a connection, as [`serve`] does. Returns whether it announced its exit; if
+/// not,
 /// it has closed its end.
 ///
 /// # Errors
-/// Where the protocol is not followed.
+/// If the protocol is not followed.
 pub fn attend(connection: &Connection, root: Option<PathBuf>) -> Result<bool, ServerError> {
     let params = connection.initialize(serde_json::to_value(capabilities())?)?;
     let params: InitializeParams = serde_json::from_value(params)?;
@@ -232,11 +233,11 @@ impl<'c> Server<'c> {
             if let (true, Some(known)) = (scenes.is_empty() && reading.description.is_some(), &model.known) {
                 scenes.push((None, Arc::clone(known)));
             }
-            // Of a text with errors the mechanism is not known.
+            // The mechanism of a text with errors is not known.
             let error = error.filter(|_| !scenes.is_empty());
             self.mechanisms.insert(path.clone(), (self.readings, error));
             if !scenes.is_empty() && !model.is_made_up {
-                // The thread lives as long as this does.
+                // The thread lives as long as the server.
                 let _ = self.questions.send(Question { path, reading: self.readings, scenes });
             }
         }

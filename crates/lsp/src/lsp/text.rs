@@ -1,4 +1,4 @@
-//! Texts as the protocol counts them: lines from 0, columns in units of UTF-16.
+//! Texts with positions of the protocol: lines from 0, columns in units of UTF-16.
 
 use std::ops::Range;
 
@@ -12,14 +12,14 @@ pub struct Text {
 }
 
 impl Text {
-    /// Of a file.
+    /// A text, split into lines.
     pub fn new(text: impl Into<String>) -> Self {
         let text = text.into();
         let lines = std::iter::once(0).chain(text.match_indices('\n').map(|(newline, _)| newline + 1)).collect();
         Self { text, lines }
     }
 
-    /// All of it.
+    /// The whole text.
     pub fn as_str(&self) -> &str {
         &self.text
     }
@@ -29,7 +29,7 @@ impl Text {
         self.lines.partition_point(|&start| start <= offset).saturating_sub(1)
     }
 
-    /// Bytes of a line without its end; an empty range behind the last.
+    /// Bytes of a line without its line break; an empty range after the last line.
     pub fn line(&self, line: usize) -> Range<usize> {
         let start = self.lines.get(line).copied().unwrap_or(self.text.len());
         let end = self.lines.get(line + 1).map_or(self.text.len(), |next| next - 1);
@@ -49,7 +49,7 @@ impl Text {
         Position { line: line as u32, character: before.encode_utf16().count() as u32 }
     }
 
-    /// The byte of a position; the end of the line or the text where there is no such position.
+    /// The byte of a position; the end of the line or the text if there is no such position.
     pub fn offset(&self, position: Position) -> usize {
         let line = self.line(position.line as usize);
         let mut units = 0;
@@ -67,7 +67,7 @@ impl Text {
         LspRange { start: self.position(span.start), end: self.position(span.end.max(span.start)) }
     }
 
-    /// The text with a change.
+    /// The text after a change.
     #[must_use]
     pub fn changed(&self, change: TextDocumentContentChangeEvent) -> Self {
         let Some(range) = change.range else { return Self::new(change.text) };

@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use lsp_types::Uri;
 
-/// The path that an address names; `None` where it names no file on this machine.
+/// The path that an address names; `None` if it names no file on this machine.
 pub fn path_of(uri: &Uri) -> Option<PathBuf> {
     let rest = uri.as_str().strip_prefix("file://")?;
     let path = &rest[rest.find('/')?..];
@@ -19,7 +19,7 @@ pub fn path_of(uri: &Uri) -> Option<PathBuf> {
     Some(PathBuf::from(if cfg!(windows) && drive { &text[1..] } else { &text }))
 }
 
-/// The address of a path, which is absolute.
+/// The address of an absolute path.
 pub fn uri_of(path: &Path) -> Option<Uri> {
     let text = path.to_str()?.replace(std::path::MAIN_SEPARATOR, "/");
     let mut uri = String::from(if text.starts_with('/') { "file://" } else { "file:///" });

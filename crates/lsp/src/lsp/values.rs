@@ -13,7 +13,7 @@ use crate::model::{Description, ParameterValue};
 pub struct Resolved {
     /// At the nominal values of all parameters, SI.
     pub nominal: f64,
-    /// An interval that encloses it at all values of the parameters, SI; none where no parameter is uncertain.
+    /// An interval that encloses it at all values of the parameters, SI; `None` if it is constant or unbounded.
     pub interval: Option<[f64; 2]>,
 }
 
@@ -31,12 +31,12 @@ pub struct Values<'m> {
 }
 
 impl<'m> Values<'m> {
-    /// Of a model.
+    /// Evaluates the parameters of a model.
     pub fn of(model: &'m Description) -> Self {
         let (builder, count) = (Builder::new(), model.parameters.len());
         let (nominal, exprs) = (Vec::with_capacity(count), Vec::with_capacity(count));
         let mut own = Self { model, nominal, builder, exprs, symbols: Vec::new(), bounds: Vec::new() };
-        // Each follows from those before it.
+        // Each parameter depends only on those before it.
         for parameter in &model.parameters {
             let (nominal, expr) = match &parameter.value {
                 ParameterValue::Interval { nominal, lower, upper } => {
@@ -53,7 +53,7 @@ impl<'m> Values<'m> {
         own
     }
 
-    /// The value of a formula; `None` where it is made of more than parameters.
+    /// The value of a formula; `None` if it depends on more than parameters.
     pub fn resolve(&self, formula: &Formula) -> Option<Resolved> {
         Some(Resolved { nominal: self.nominal(formula)?, interval: self.enclosure(formula) })
     }
@@ -81,7 +81,8 @@ impl<'m> Values<'m> {
         built.ok().map(Scalar::expr)
     }
 
-    /// An enclosure over the box of the uncertain parameters; `None` where the formula depends on none of them.
+    /// An enclosure over the box of the uncertain parameters; `None` if the formula is constant or the enclosure
+    /// infinite.
     fn enclosure(&self, formula: &Formula) -> Option<[f64; 2]> {
         let root = self.expr(formula)?;
         if self.builder.scalar(root).as_constant().is_some() {
@@ -93,7 +94,7 @@ impl<'m> Values<'m> {
     }
 }
 
-/// The SI unit of what a name stands for; empty for a pure number, `None` where it is unknown.
+/// The SI unit of a name's value; empty for a pure number, `None` if it is unknown.
 pub fn unit_of(model: &Description, name: &str) -> Option<String> {
     let symbol = model.symbol(name)?;
     let dimension = match symbol {

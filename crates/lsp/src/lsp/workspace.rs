@@ -1,4 +1,4 @@
-//! Open documents, and the models that they belong to, read anew where a text changed.
+//! Open documents, and the models that they belong to, read again after a text changed.
 //!
 //! A document is a model, or a file of assemblies. The latter belongs to the models that include it: open ones, else
 //! those in its folder and the folders above it within the workspace, because an included file lies below its model. A
@@ -28,24 +28,24 @@ const KEYS_OF_PART: [&str; 3] = ["description", "include", "assemblies"];
 pub struct Document {
     /// Its address, as the editor writes it.
     pub uri: Uri,
-    /// As it is now.
+    /// Its present text.
     pub text: Text,
-    /// Its number, which the editor gives it.
+    /// Its version, which the editor counts.
     pub version: i32,
 }
 
 /// A model with its names.
 #[derive(Clone, Debug)]
 pub struct Model {
-    /// The model's file; of assemblies alone one that is not there.
+    /// The model's file; for assemblies alone, one that does not exist.
     pub path: PathBuf,
-    /// As it was read last.
+    /// Result of the last reading.
     pub opened: Opened,
     /// Its names.
     pub names: Names,
-    /// The model as it could be read last.
+    /// The last model that could be read.
     pub known: Option<Arc<Description>>,
-    /// All names that it had when they could be read last.
+    /// All names of the last reading that had any.
     pub names_known: Vec<(String, crate::grammar::mentions::NameKind)>,
     /// Its files.
     files: BTreeSet<PathBuf>,
@@ -67,7 +67,7 @@ pub struct Workspace {
     pub documents: BTreeMap<PathBuf, Document>,
     /// Folders that the editor has open.
     folders: Vec<PathBuf>,
-    /// Folder whose files models may name, beside those of their own folders.
+    /// Folder whose files models may name, in addition to those of their own folders.
     pub root: Option<PathBuf>,
     /// Models of the open documents.
     models: BTreeMap<PathBuf, Model>,
@@ -76,7 +76,7 @@ pub struct Workspace {
 }
 
 impl Workspace {
-    /// Of these folders; models may name files of `root` beside those of their own folders.
+    /// A workspace of these folders; models may name files of `root`, in addition to those of their own folders.
     pub fn new(folders: Vec<PathBuf>, root: Option<PathBuf>) -> Self {
         Self { folders, root, ..Self::default() }
     }
@@ -87,7 +87,7 @@ impl Workspace {
         self.documents.insert(path, document);
     }
 
-    /// Closes a document: the stored text counts again.
+    /// Closes a document: its stored text is used again.
     pub fn close(&mut self, path: &Path) {
         self.documents.remove(path);
         self.changed.insert(path.to_owned());
@@ -98,7 +98,7 @@ impl Workspace {
         self.changed.extend(self.documents.keys().cloned());
     }
 
-    /// Reads models of which a text changed; those that were read.
+    /// Reads the models whose texts changed. Returns the paths of those that were read.
     pub fn refresh(&mut self) -> Vec<PathBuf> {
         let changed = std::mem::take(&mut self.changed);
         if changed.is_empty() {
@@ -130,7 +130,7 @@ impl Workspace {
         read.into_iter().filter(|path| self.models.contains_key(path)).collect()
     }
 
-    /// Reads a model that includes a file; its path.
+    /// Reads a model that includes a file. Returns the model's path.
     fn read_including(&mut self, part: &Path, open: &OpenTexts) -> PathBuf {
         let known = |own: &&Model| !own.is_made_up && own.files.contains(part);
         if let Some(path) = self.models.values().find(known).map(|own| own.path.clone()) {
@@ -150,7 +150,7 @@ impl Workspace {
         path
     }
 
-    /// Stored models that may include a file: in its folder and those above.
+    /// Stored models that may include a file, in its folder and the folders above.
     fn including(&self, part: &Path) -> Vec<PathBuf> {
         let Some(name) = part.file_name().and_then(|name| name.to_str()) else { return Vec::new() };
         let within = |folder: &&Path| self.folders.iter().any(|own| folder.starts_with(own));
@@ -160,7 +160,7 @@ impl Workspace {
         for folder in own.into_iter().chain(above) {
             let Ok(entries) = std::fs::read_dir(folder) else { continue };
             let mut files: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
-            // Of a model that is open its text counts, and not the stored one.
+            // Open models have been examined with their open texts.
             files.retain(|path| path != part && !self.documents.contains_key(path));
             files.retain(|path| path.extension().is_some_and(|own| own == "yaml" || own == "yml"));
             files.sort_unstable();
@@ -173,7 +173,7 @@ impl Workspace {
         found
     }
 
-    /// A model with an instance of each assembly of a file.
+    /// Path and text of a model with an instance of each assembly of a file.
     fn made_up(&self, part: &Path) -> (PathBuf, String) {
         let name = part.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
         let text = self.documents.get(part).map_or("", |own| own.text.as_str());
@@ -204,7 +204,7 @@ impl Workspace {
     /// Whether an open document is a file of assemblies and no model.
     fn is_part(&self, path: &Path) -> bool {
         let text = self.documents.get(path).map_or("", |own| own.text.as_str());
-        // Cheaper than a tree, and the same where the text is half typed.
+        // Cheaper than a tree, and works on half-typed text.
         let keys = text.lines().filter(|line| line.starts_with(|c: char| c.is_alphabetic() || c == '_'));
         let mut keys = keys.filter_map(|line| line.split_once(':')).map(|(key, _)| key.trim_end()).peekable();
         keys.peek().is_some() && keys.all(|key| KEYS_OF_PART.contains(&key))
@@ -231,7 +231,7 @@ impl Workspace {
         OpenTexts::new(own.chain(changed.iter().map(|(path, text)| (path.clone(), text.clone()))))
     }
 
-    /// The text of a file of a model: as it is open, else as it was read.
+    /// The text of a file of a model: the open one, else as it was read.
     pub fn text_of(&self, model: &Model, path: &Path) -> Option<Text> {
         if let Some(document) = self.documents.get(path) {
             return Some(document.text.clone());
