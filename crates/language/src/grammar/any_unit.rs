@@ -1,4 +1,4 @@
-//! Values whose unit nothing asks for: they say it themselves.
+//! Values of any unit, which determine their dimension themselves.
 
 use symdiff::Formula;
 
@@ -10,7 +10,7 @@ use super::symbols::SymbolTable;
 use crate::syntax::yaml::Node;
 
 impl<S: SymbolTable> Reader<'_, S> {
-    /// A formula or a number with its unit, of any dimension, and that dimension where it is known.
+    /// Reads a formula or a number with its unit, of any dimension, and that dimension if it is known.
     pub fn any_unit(&mut self, node: &Node, context: Context) -> Option<(Formula, Option<Dimension>)> {
         let (formula, dimension) = match self.written(node)? {
             Written::Quantity { value, unit } => (Formula::number(unit.to_si(value)), Some(unit.dimension)),

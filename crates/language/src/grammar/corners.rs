@@ -13,7 +13,7 @@ impl<S: SymbolTable> Reader<'_, S> {
     /// Checks a formula of parameters at all their corners; a formula with other names is not checked.
     pub fn require(&mut self, node: &Node, formula: &Formula, holds: impl Fn(f64) -> bool, requirement: &str) {
         let varies = self.is_uncertain(formula);
-        // Where all of its parameters have their nominal values, the formula has its nominal value.
+        // At corners with nominal values of all its parameters, the formula has its nominal value.
         let used = formula.names().filter_map(|(name, _)| self.corners_of.get(self.parameter(name)?));
         let mut corners: Vec<usize> = used.flatten().copied().filter(|_| varies).collect();
         corners.sort_unstable();
@@ -24,7 +24,7 @@ impl<S: SymbolTable> Reader<'_, S> {
                 return;
             }
             let problem = if !value.is_finite() {
-                // Reported where every formula is checked to be finite.
+                // Reported by the check that every formula is finite.
                 if !requirement.is_empty() {
                     return;
                 }
@@ -53,13 +53,13 @@ impl<S: SymbolTable> Reader<'_, S> {
         }
     }
 
-    /// The formula's value at a corner; `None` where it is made of more than parameters.
+    /// The formula's value at a corner; `None` if it depends on more than parameters.
     pub fn evaluate(&self, formula: &Formula, corner: usize) -> Option<f64> {
         let corner = self.corners.get(corner)?;
         evaluate(formula, |name| corner.values.get(self.parameter(name)?).copied())
     }
 
-    /// Whether an uncertain parameter stands behind a name of the formula.
+    /// Whether a name of the formula is an uncertain parameter.
     pub fn is_uncertain(&self, formula: &Formula) -> bool {
         let varies = |index: usize| self.varies.get(index).copied().unwrap_or(false);
         formula.names().any(|(name, _)| self.parameter(name).is_some_and(varies))

@@ -1,8 +1,9 @@
-//! Which dimension a formula has, and whether its parts agree.
+//! Dimensions of formulas, and mismatches of their parts.
 //!
-//! A bare number is a pure factor in a product with a parameter, and takes the other side's dimension in a sum. Beside
-//! `t` or a motion (`-5*slider.vx`, `sin(2*t)`) it may be a coefficient of any unit, so such a product fits anywhere.
-//! A parameter without unit fits anywhere, and so do formulas of it.
+//! A bare number is a pure factor in a product with a parameter, and takes the other side's dimension in a sum. In a
+//! product with `t` or a motion (`-5*slider.vx`, `sin(2*t)`) it may be a coefficient of any unit, so such a product
+//! fits
+//! anywhere. A parameter without unit fits anywhere, and so do formulas of it.
 
 use symdiff::formula::Term;
 use symdiff::{Binary, Formula, Spline, Unary};
@@ -13,7 +14,7 @@ use crate::syntax::source::Span;
 /// Known dimension of a part of a formula.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum KnownDimension {
-    /// Made of bare numbers; its value where that is plain.
+    /// Made of bare numbers; its value if that is known.
     Number(Option<f64>),
     /// Nothing is known.
     Any,
@@ -21,7 +22,7 @@ pub enum KnownDimension {
     Known {
         /// The dimension.
         dimension: Dimension,
-        /// Made without parameters, of `t` and motions only.
+        /// Whether it is made of `t` and motions only, without parameters.
         motion: bool,
     },
 }
@@ -37,7 +38,7 @@ impl KnownDimension {
         Self::Known { dimension, motion: true }
     }
 
-    /// The dimension, where one is known.
+    /// The dimension, if one is known.
     pub fn dimension(self) -> Option<Dimension> {
         match self {
             Self::Known { dimension, .. } => Some(dimension),
@@ -46,7 +47,7 @@ impl KnownDimension {
     }
 }
 
-/// Two parts that do not go together.
+/// Two parts whose dimensions do not agree.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Mismatch {
     /// Description of the error.
@@ -55,8 +56,9 @@ pub struct Mismatch {
     pub span: Span,
 }
 
-/// The formula's dimension, each name's given by `name`, those of a table's argument and value by `table`; every
-/// mismatch within it goes to `mismatches`.
+/// Dimension of a formula. `name` gives that of each name, `table` those of a table's argument and value; mismatches
+/// are
+/// added to `mismatches`.
 pub fn analyse(
     formula: &Formula,
     name: impl FnMut(&str) -> KnownDimension,
@@ -66,7 +68,7 @@ pub fn analyse(
     of_terms(formula, name, table, mismatches).pop().unwrap_or(KnownDimension::Any)
 }
 
-/// The same of every term of the formula, that of the formula last.
+/// Dimensions of all terms of a formula, that of the formula last; otherwise as [`analyse`].
 pub fn of_terms(
     formula: &Formula,
     mut name: impl FnMut(&str) -> KnownDimension,
@@ -81,7 +83,7 @@ pub fn of_terms(
             Term::Number(value) => Ok(KnownDimension::Number(Some(*value))),
             Term::Quantity(_, mark) => Ok(KnownDimension::parameter(Dimension::of_mark(*mark))),
             Term::Compared(a, b) => {
-                // In the order in which they stand there.
+                // In the order of the text.
                 let [first, second] =
                     if formula.terms()[*a].1.start < formula.terms()[*b].1.start { [a, b] } else { [b, a] };
                 sum(kinds[*first], kinds[*second], "compared")
@@ -108,7 +110,7 @@ pub fn of_terms(
     kinds
 }
 
-/// A table's value.
+/// Dimension of a table's value.
 fn looked_up([argument, value]: [Option<Dimension>; 2], a: KnownDimension) -> Result<KnownDimension, String> {
     if let (Some(wanted), KnownDimension::Known { dimension, .. }) = (argument, a)
         && !dimension.fits(wanted)

@@ -1,6 +1,6 @@
-//! What an element of the language is: a struct whose fields are its keys.
+//! Elements of the language: structs whose fields are their keys.
 //!
-//! `#[derive(Element)]` (crate `mbint-derive`) makes all of this from the struct: the reader, the schema, the
+//! `#[derive(Element)]` (crate `mbint-derive`) generates all of this from the struct: the reader, the schema, the
 //! documentation, the formulas and references within, and whether it leaves the plane.
 
 use schemars::{Schema, SchemaGenerator};
@@ -21,19 +21,19 @@ pub trait Group: Sized {
     /// Names of the keys, in the order in which they are suggested.
     fn key_names() -> Vec<&'static str>;
 
-    /// The keys with all that is known of them.
+    /// The keys with all their properties.
     fn keys(generator: &mut SchemaGenerator) -> Vec<Key>;
 
-    /// Reads the keys; `units` is the place of the unit that holds in those that have several. `None` where an error
-    /// was reported.
+    /// Reads the keys; `units` is the index of the applicable unit of those that have several. `None` if an error was
+    /// reported.
     fn read<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: &Fields<'_>, units: usize) -> Option<Self>;
 
-    /// The place of the unit that holds for the keys after these; `None` where these do not decide it.
+    /// Index of the applicable unit of the keys after these; `None` if these do not determine it.
     fn units(_read: Option<&Self>) -> Option<usize> {
         None
     }
 
-    /// What the keys' values are to an instance that is mirrored or turned.
+    /// Images of the keys' values in a mirrored or turned instance.
     fn images() -> Vec<KeyImage> {
         Vec::new()
     }
@@ -41,10 +41,10 @@ pub trait Group: Sized {
     /// Every formula within.
     fn formulas<'a>(&'a self, found: &mut Vec<&'a Formula>);
 
-    /// Every body, point and joint that is named within, formulas aside.
+    /// Every body, point and joint that is named within, except in formulas.
     fn references<'a>(&'a mut self, _found: &mut Vec<Reference<'a>>) {}
 
-    /// The key that leaves the plane, by the text alone.
+    /// The key whose value leaves the plane, determined from the text alone.
     fn leaves_plane(_mapping: &Node) -> Option<&'static str> {
         None
     }
@@ -60,14 +60,14 @@ pub trait Element: Group {
     const DESCRIPTION: &'static str;
     /// Equation, in the symbols of its file's head.
     const EQUATIONS: &'static [&'static str];
-    /// Where that is from.
+    /// Source of the equation.
     const SOURCE: &'static str;
     /// Its keys in the mechanism that examples belong to.
     const EXAMPLE: &'static str;
-    /// The key whose list may stand for the mapping.
+    /// The key whose list may replace the mapping.
     const SHORT: Option<&'static str>;
 
-    /// Reads it; `at` is where to say that a key is missing.
+    /// Reads it; missing keys are reported at `at`.
     fn read_node<S: SymbolTable>(reader: &mut Reader<'_, S>, node: &Node, at: Span) -> Option<Self> {
         let fields = match (&node.value, Self::SHORT) {
             (yaml::Value::Sequence(_), Some(key)) => Fields::single(Self::WHAT, Self::key_names(), key, node, at),
@@ -76,7 +76,7 @@ pub trait Element: Group {
         Self::read(reader, &fields, 0)
     }
 
-    /// Says in the schema which keys do not go together.
+    /// Adds to the schema which keys are incompatible.
     fn constrain(_schema: &mut Schema) {}
 
     /// The schema of its mapping, with its example.
@@ -89,27 +89,27 @@ pub trait Element: Group {
     }
 }
 
-/// What else must hold of the keys of an element.
+/// Further checks of the keys of an element.
 pub trait Checked: Sized {
-    /// Reports keys that do not go together, and missing ones of which another would do.
+    /// Reports incompatible keys, and alternatives of which none is given.
     fn check_keys<S: SymbolTable>(_reader: &mut Reader<'_, S>, _fields: &Fields<'_>) {}
 
-    /// Says in the schema what can be said there of the keys that do not go together.
+    /// Adds to the schema which keys are incompatible, as far as it can express that.
     fn constrain(_schema: &mut Schema) {}
 
-    /// Reports values that do not go together.
+    /// Reports incompatible values.
     fn check<S: SymbolTable>(&self, _reader: &mut Reader<'_, S>, _fields: &Fields<'_>) {}
 }
 
-/// What can stand behind a key: a formula, a point, a mapping.
+/// Value of a key: a formula, a point, a mapping.
 pub trait Value: Sized {
     /// Its image in a mirror.
     const IMAGE: Image = Image::Same;
 
-    /// Reads it; `at` is the key's place. `None` where an error was reported.
+    /// Reads it; `at` is the key's location. `None` if an error was reported.
     fn read<S: SymbolTable>(reader: &mut Reader<'_, S>, node: &Node, at: Span, quantity: &Quantity) -> Option<Self>;
 
-    /// What a file may have there.
+    /// Schema of the value in a file.
     fn schema(generator: &mut SchemaGenerator) -> Schema;
 
     /// Keys within it.
@@ -117,7 +117,7 @@ pub trait Value: Sized {
         Vec::new()
     }
 
-    /// As a file has it; `None` where it has no short form.
+    /// The value as a file has it; `None` if it has no short form.
     fn to_json(&self) -> Option<serde_json::Value> {
         None
     }
@@ -125,22 +125,22 @@ pub trait Value: Sized {
     /// Every formula within.
     fn formulas<'a>(&'a self, _found: &mut Vec<&'a Formula>) {}
 
-    /// Every body, point and joint that is named within, formulas aside.
+    /// Every body, point and joint that is named within, except in formulas.
     fn references<'a>(&'a mut self, _found: &mut Vec<Reference<'a>>) {}
 
-    /// Whether it leaves the plane, by the text alone.
+    /// Whether it leaves the plane, determined from the text alone.
     fn leaves_plane(_node: &Node) -> bool {
         false
     }
 }
 
-/// A value that a plain number can stand for.
+/// A value that may be given as a plain number.
 pub trait FromNumber {
     /// The number, in every component.
     fn from_number(value: f64) -> Self;
 }
 
-/// Reports where two keys are there and the second is not larger than the first.
+/// Reports an error if two keys are given and the second is not larger than the first.
 pub fn ordered<S: SymbolTable>(
     reader: &mut Reader<'_, S>,
     fields: &Fields<'_>,
@@ -168,17 +168,17 @@ pub struct Key {
     pub name: &'static str,
     /// Summary.
     pub doc: &'static str,
-    /// Its unit, or several divided by ` or `; empty where it is no quantity.
+    /// Its unit, or several separated by ` or `; empty if it is no quantity.
     pub unit: &'static str,
-    /// Whether it must be there.
+    /// Whether it is required.
     pub required: bool,
-    /// What holds where it is not there.
+    /// Its default.
     pub default: Option<serde_json::Value>,
-    /// The same in words, where it depends on other keys.
+    /// Its default in words, if that depends on other keys.
     pub default_in_words: Option<&'static str>,
-    /// What may stand behind it.
+    /// Schema of its value.
     pub schema: Schema,
-    /// What must hold of its number.
+    /// Requirement on its number.
     pub requirement: Option<Requirement>,
     /// Keys within it.
     pub keys: Vec<Key>,
@@ -199,7 +199,7 @@ impl Key {
     }
 }
 
-/// A mapping with these keys alone.
+/// Schema of a mapping with these keys alone.
 pub fn object_schema(description: &str, keys: Vec<Key>) -> Schema {
     let required: Vec<&str> = keys.iter().filter(|key| key.required).map(|key| key.name).collect();
     let mut schema = schemars::json_schema!({ "description": description, "type": "object" });
@@ -224,20 +224,20 @@ pub fn object_schema(description: &str, keys: Vec<Key>) -> Schema {
     schema
 }
 
-/// Refuses numbers below the limit 0, and quantities with a minus. Formulas are for the reader.
+/// Refuses numbers below the limit 0, and quantities with a minus sign. The reader checks formulas.
 pub fn not_negative(property: &mut Schema, limit: &str) {
     property.insert(limit.to_owned(), 0.into());
     property
         .insert("pattern".to_owned(), r"^(?!\s*-\s*[0-9.]+([eE][+-]?[0-9]+)?\s*([A-Za-zµ°%][^\s+(-]*)?\s*$)".into());
 }
 
-/// Exactly one of these keys is there.
+/// Requires exactly one of these keys.
 pub fn one_of(schema: &mut Schema, keys: &[&str]) {
     let required: Vec<serde_json::Value> = keys.iter().map(|key| serde_json::json!({ "required": [key] })).collect();
     schema.insert("oneOf".to_owned(), required.into());
 }
 
-/// One of several kinds, each by its word, its description and its schema.
+/// Schema of one of several kinds, each by its word, its description and its schema.
 pub fn kinds_schema(description: &str, kinds: Vec<(&'static str, &'static str, Schema)>) -> Schema {
     let mut properties = serde_json::Map::new();
     for (word, description, mut schema) in kinds {
@@ -261,7 +261,7 @@ pub fn kind_schema<E: Element + schemars::JsonSchema>(
     (E::KEYWORD, E::DESCRIPTION, short_or_full::<E>(generator))
 }
 
-/// The mapping of an element, or the list that may stand for it.
+/// Schema of an element's mapping, or of the list that may replace it.
 fn short_or_full<E: Element + schemars::JsonSchema>(generator: &mut SchemaGenerator) -> Schema {
     let full = generator.subschema_for::<E>();
     let Some(short) = E::SHORT else { return full };
@@ -305,7 +305,7 @@ pub struct ElementDocs {
     pub description: &'static str,
     /// Equation.
     pub formulas: &'static [&'static str],
-    /// Where that is from.
+    /// Source of the equation.
     pub source: &'static str,
     /// Its keys in the mechanism of examples.
     pub example: &'static str,
@@ -320,7 +320,7 @@ pub struct ElementDocs {
 pub struct KeyDocs {
     /// As it is written.
     pub name: &'static str,
-    /// Whether it must be there.
+    /// Whether it is required.
     pub required: bool,
     /// Description with unit and default.
     pub description: String,
@@ -330,7 +330,7 @@ pub struct KeyDocs {
 }
 
 impl ElementDocs {
-    /// Of a kind of element.
+    /// Documentation of a kind of element.
     pub fn of<E: Element>() -> Self {
         fn docs(key: &Key) -> KeyDocs {
             let keys = key.keys.iter().map(docs).collect();

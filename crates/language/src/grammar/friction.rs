@@ -1,6 +1,6 @@
-//! How joints rub.
+//! Friction in joints.
 
-/// Which friction a joint with teeth has.
+/// Kind of friction of a joint with teeth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MeshKind {
     /// A share of the power that is transmitted.
@@ -9,7 +9,7 @@ pub enum MeshKind {
     Sliding,
 }
 
-/// Which motions of a joint friction resists.
+/// Motions of a joint that friction resists.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FrictionMode {
     /// Its rotation: revolute joints.

@@ -1,4 +1,4 @@
-//! What stands behind keys: formulas, vectors, directions, references, groups of them.
+//! Types of values of keys: formulas, vectors, directions, references, groups of them.
 
 use std::ops::Deref;
 
@@ -42,7 +42,7 @@ impl FromNumber for Formula {
     }
 }
 
-/// Formulas of parameters and of a variable of the element's own.
+/// Formulas of parameters and of a variable of the element.
 macro_rules! of_variable {
     ($($(#[$doc:meta])* $name:ident, $variable:literal, $dimension:expr;)*) => {$(
         $(#[$doc])*
@@ -184,13 +184,13 @@ vector! {
         yaml::Value::Sequence(_) => reader.three(node, quantity.context, quantity.dimension()),
         _ => reader.quantity(node, quantity).map(|all| [all.clone(), all.clone(), all]),
     };
-    /// Components along x and y, and also in the plane along z.
+    /// Components along x and y, and along z also in a planar model.
     SpacePoint, image Polar, schema values::Components, leaves nothing_leaves,
     read |reader, node, quantity| reader.components_in_space(node, quantity.context, quantity.dimension());
-    /// An axis of a shape: also in the plane any one.
+    /// An axis of a shape: any axis, also in a planar model.
     SpaceAxis, image Polar, schema values::Direction, leaves nothing_leaves,
     read |reader, node, _| reader.axis(node);
-    /// Factors along the axes of a frame, or one for all, which reflect where they are negative.
+    /// Factors along the axes of a frame, or one for all; negative ones reflect.
     Factors, image Factors, schema values::PerAxis, leaves nothing_leaves,
     read |reader, node, quantity| match node.value {
         yaml::Value::Sequence(_) => reader.three(node, quantity.context, quantity.dimension()),
@@ -205,7 +205,7 @@ impl SpaceAxis {
     }
 }
 
-/// Of a shape: also in the plane any one.
+/// Rotation of a shape: any rotation, also in a planar model.
 impl Value for Rotation {
     const IMAGE: Image = Image::Rotation;
 
@@ -230,7 +230,8 @@ fn nothing_leaves(_: &Node) -> bool {
     false
 }
 
-/// A unit vector by its axis; a vector of one number in all components by that number.
+/// JSON of a vector: the axis of a unit vector, the number of equal components, else a list; `None` if a component is
+/// not a number.
 fn vector_as_json(vector: &[Formula; 3]) -> Option<serde_json::Value> {
     let [x, y, z] = [vector[0].as_number()?, vector[1].as_number()?, vector[2].as_number()?];
     Some(match [x, y, z] {
@@ -242,19 +243,19 @@ fn vector_as_json(vector: &[Formula; 3]) -> Option<serde_json::Value> {
     })
 }
 
-/// Along an axis, 0 to 2.
+/// The unit vector along an axis, 0 to 2.
 fn unit_vector(axis: usize) -> [Formula; 3] {
     std::array::from_fn(|other| Formula::number(f64::from(u8::from(axis == other))))
 }
 
 impl Direction {
-    /// Along an axis, 0 to 2.
+    /// The unit vector along an axis, 0 to 2.
     pub fn along(axis: usize) -> Self {
         Self(unit_vector(axis))
     }
 }
 
-/// One in the first point's frame, one in the second's.
+/// A direction in the first point's frame, and one in the second's.
 impl Value for [Direction; 2] {
     const IMAGE: Image = Image::Polars;
 

@@ -1,6 +1,6 @@
 //! Names and formulas of a model with their locations, for editors.
 //!
-//! Readers note them where an editor asks for it; a run notes nothing.
+//! Readers record them for an editor; a run records nothing.
 
 use std::cell::RefCell;
 
@@ -44,12 +44,12 @@ pub enum NameKind {
     Scene,
 }
 
-/// Where a name gets its meaning.
+/// Definition of a name.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Definition {
     /// Kind of the named thing.
     pub kind: NameKind,
-    /// The full name: `front_left.upright`; of a point with its body's.
+    /// The full name: `front_left.upright`; for a point, with that of its body.
     pub name: String,
     /// The key.
     pub span: Span,
@@ -57,23 +57,23 @@ pub struct Definition {
     pub extent: Span,
 }
 
-/// Where a name is used.
+/// Use of a name.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Mention {
     /// The full name, perhaps with parts of the motion behind it: `crank.B.vx`.
     pub name: String,
-    /// Kind of the named thing, where only one kind can stand there.
+    /// Kind of the named thing, if only one kind is allowed there.
     pub kind: Option<NameKind>,
-    /// Its bytes; the text may be the end of the full name only.
+    /// Its bytes; the text may be only the end of the full name.
     pub span: Span,
 }
 
 /// A formula that was read.
 #[derive(Clone, Debug)]
 pub struct ReadFormula {
-    /// The offset that places in the formula count from; `None` where the text is not there word for word.
+    /// Offset from which locations in the formula count; `None` if the text is not in the source word for word.
     pub start: Option<usize>,
-    /// The node that it stands in.
+    /// Bytes of its node.
     pub span: Span,
     /// The formula, with full names.
     pub formula: Formula,
@@ -81,7 +81,7 @@ pub struct ReadFormula {
     pub kinds: Vec<KnownDimension>,
 }
 
-/// All names and formulas that were read, in the order of reading; those of scenes again.
+/// All names and formulas that were read, in the order of reading; repeated for scenes.
 #[derive(Clone, Debug, Default)]
 pub struct Mentions {
     /// Definitions.
@@ -92,5 +92,5 @@ pub struct Mentions {
     pub formulas: Vec<ReadFormula>,
 }
 
-/// Notes of readers.
+/// Records of readers.
 pub type Notes = RefCell<Mentions>;

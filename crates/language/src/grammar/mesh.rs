@@ -21,14 +21,14 @@ use crate::syntax::yaml::Node;
 /// A mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mesh {
-    /// Its file, as it is named.
+    /// Name of its file, as written.
     pub file: String,
-    /// In the file's unit; none where the file has not been read.
+    /// Its triangles, in the file's unit; empty if the file has not been read.
     pub triangles: Arc<[Triangle]>,
 }
 
 impl Mesh {
-    /// Of a file that is read later, or never.
+    /// A mesh whose file is read later, or never.
     pub fn unread(file: &str) -> Self {
         Self { file: file.to_owned(), triangles: Arc::new([]) }
     }

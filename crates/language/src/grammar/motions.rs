@@ -37,7 +37,7 @@ pub const ANGULAR_MOTIONS: [Motion<bool>; 4] = [
 /// Angles of a body's orientation.
 pub const ATTITUDE: [&str; 3] = ["roll", "pitch", "yaw"];
 
-/// A body's orientation, which is no number but can be given at the start.
+/// A body's orientation, which is no number, but can be given as an initial value.
 pub const ORIENTATION: &str = "orientation";
 
 /// Coordinates of a joint and their derivatives.
@@ -53,7 +53,7 @@ pub const JOINT_MOTIONS: [Motion<JointCoordinate>; 6] = [
 /// Components of a vector.
 pub const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// Whether it is the name of a part of a body's motion, so that no point can be called so.
+/// Whether a name is that of a part of a body's motion, which no point can have.
 pub fn is_motion(name: &str) -> bool {
     MOTIONS.iter().any(|(motion, ..)| *motion == name)
         || ANGULAR_MOTIONS.iter().any(|(vector, ..)| *vector == name)
@@ -66,7 +66,8 @@ pub fn motion_name(coordinate: Coordinate, order: TimeOrder) -> &'static str {
     MOTIONS.iter().find(|(_, c, o)| (*c, *o) == (coordinate, order)).map_or("", |(name, ..)| name)
 }
 
-/// The name of a derivative of a coordinate of a body or a joint: `block.vx` for `block.x`. The coordinate's own, where
+/// The name of a derivative of a coordinate of a body or a joint: `block.vx` for `block.x`. The coordinate's own name
+/// if
 /// its derivatives have none.
 pub fn derivative_name(coordinate: &str, order: TimeOrder) -> String {
     let derivative = coordinate.rsplit_once('.').and_then(|(owner, position)| {
@@ -102,7 +103,7 @@ pub fn motion_dimension(coordinate: Coordinate, order: TimeOrder) -> Dimension {
     }
 }
 
-/// Of a joint's coordinate, of its rate, and of what pushes it.
+/// Dimensions of a joint's coordinate, of its rate, and of its generalised force.
 pub fn dimensions_of(coordinate: JointCoordinate) -> [Dimension; 3] {
     match coordinate {
         JointCoordinate::Angle => [Dimension::ANGLE, Dimension::ANGULAR_VELOCITY, Dimension::TORQUE],

@@ -1,4 +1,4 @@
-//! Two keys of which the second is larger, or only one may be there.
+//! Pairs of keys, the value of the second larger than that of the first.
 
 use symdiff::Formula;
 
@@ -8,7 +8,7 @@ use super::symbols::SymbolTable;
 use crate::syntax::codes::Code;
 
 impl<S: SymbolTable> Reader<'_, S> {
-    /// Reports where the second of two keys is not larger than the first.
+    /// Reports an error if the second of two keys is not larger than the first.
     pub fn ordered(&mut self, fields: &Fields, low: &str, first: &Formula, high: &str, second: &Formula) {
         for corner in 0..self.corners.len() {
             let values = self.evaluate(first, corner).zip(self.evaluate(second, corner));

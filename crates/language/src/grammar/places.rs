@@ -12,7 +12,7 @@ use crate::syntax::suggest::{self, clip};
 use crate::syntax::yaml::{Node, Value};
 
 impl<S: SymbolTable> Reader<'_, S> {
-    /// The body that is named.
+    /// Reads the name of a body.
     pub fn body_ref(&mut self, node: &Node) -> Option<usize> {
         let scalar = self.scalar(node, "the name of a body")?;
         self.mentions_node(Some(NameKind::Body), node);
@@ -35,7 +35,7 @@ impl<S: SymbolTable> Reader<'_, S> {
         Some(index)
     }
 
-    /// The point that is named: `body.point`, or `body` for the origin of its frame.
+    /// Reads the name of a point: `body.point`, or `body` for the origin of its frame.
     pub fn point_ref(&mut self, node: &Node) -> Option<PointRef> {
         let scalar = self.scalar(node, "`body` or `body.point`")?;
         self.mentions_node(Some(NameKind::Body), node);
@@ -75,7 +75,7 @@ impl<S: SymbolTable> Reader<'_, S> {
         None
     }
 
-    /// `body.point`, as most places are written: looked up at once, before what a name may be else.
+    /// Looks up `body.point`, the form of most points, before any other form of a name.
     fn point_of_body(&self, text: &str) -> Option<PointRef> {
         let (name, point) = text.split_once('.')?;
         let body = self.model.body(name)?;
@@ -83,7 +83,8 @@ impl<S: SymbolTable> Reader<'_, S> {
         Some(PointRef { body, point: Some(point) })
     }
 
-    /// What a name is of, and the rest: of a name in an instance all but the last part, of others the first.
+    /// Splits a name into its owner and the rest. In an instance the owner is all but the last part, else the first
+    /// part.
     fn owner<'n>(&self, name: &'n str) -> (&'n str, &'n str) {
         let first = name.split_once('.').unwrap_or((name, ""));
         let in_instance = || self.model.instances().any(|known| name.starts_with(&format!("{known}.")));
@@ -142,7 +143,7 @@ impl<S: SymbolTable> Reader<'_, S> {
         points.into_iter().collect()
     }
 
-    /// The joint that is named, with this coordinate.
+    /// Reads the name of a joint that has this coordinate.
     pub fn joint_ref(&mut self, node: &Node, coordinate: JointCoordinate) -> Option<usize> {
         let scalar = self.scalar(node, "the name of a joint")?;
         self.mentions_node(Some(NameKind::Joint), node);
@@ -198,8 +199,9 @@ impl<S: SymbolTable> Reader<'_, S> {
         a != b
     }
 
-    /// The joint of `on`, and its coordinate: that of `coordinate`, else the displacement of what only slides and the
-    /// angle of others.
+    /// Reads the joint of `on`, and its coordinate: that of `coordinate`, else the displacement if the joint only
+    /// slides,
+    /// else the angle.
     pub fn on_joint(&mut self, fields: &Fields) -> Option<OnJoint> {
         let coordinate = fields.get("coordinate").map(|node| {
             let names = [("angle", JointCoordinate::Angle), ("displacement", JointCoordinate::Displacement)];
@@ -219,14 +221,14 @@ impl<S: SymbolTable> Reader<'_, S> {
         Some(OnJoint { joint, coordinate })
     }
 
-    /// The ground that a name is written in: the model's, or that of a turned instance.
+    /// Index of the ground that a name refers to: the model's, or that of a turned instance.
     fn ground_of(&self, node: &Node) -> usize {
         let scope = node.scalar().and_then(|scalar| scalar.scope.as_deref());
         let turned = scope.filter(|scope| scope.frame().is_some_and(|frame| frame.turned == Turned::ByAngle));
         turned.and_then(|scope| self.model.body(&scope.full("ground"))).unwrap_or(0)
     }
 
-    /// Two bodies by their angles, or two joints by theirs.
+    /// Reads two bodies with angles, or two joints with angles.
     pub fn two_rotating(&mut self, node: &Node) -> Option<[Rotating; 2]> {
         let pair = self.two(node, "a list of two bodies or joints")?;
         if !pair.iter().any(|node| self.names_joint(node)) {

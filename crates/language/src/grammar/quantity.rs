@@ -1,4 +1,4 @@
-//! Dimensions: what kind of quantity a number is.
+//! Dimensions of quantities.
 
 use std::fmt;
 
@@ -7,10 +7,10 @@ use symdiff::math;
 /// Exponents are counted in twelfths, so that square and cube roots stay exact.
 const ONE: i32 = 12;
 
-/// What kind of quantity a number is: powers of m, kg, s and rad.
+/// Dimension of a quantity: powers of m, kg, s and rad.
 ///
-/// An angle is a pure number; its power is kept only to print `rad/s` where `1/s` is meant so. [`Dimension::fits`]
-/// does not look at it.
+/// An angle is a pure number; its power is stored only to print `rad/s` instead of `1/s`. [`Dimension::fits`] ignores
+/// it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct Dimension {
     length: i32,
@@ -20,7 +20,7 @@ pub struct Dimension {
 }
 
 impl Dimension {
-    /// Of whole powers of m, kg, s and rad.
+    /// The dimension with these whole powers of m, kg, s and rad.
     const fn of(length: i32, mass: i32, time: i32, angle: i32) -> Self {
         Self { length: length * ONE, mass: mass * ONE, time: time * ONE, angle: angle * ONE }
     }
@@ -94,7 +94,7 @@ const NAMED: [(Dimension, &str, &str); 20] = [
 ];
 
 impl Dimension {
-    /// As a number of its own, for terms of formulas: whole powers of m, kg, s and rad, 16 bits each.
+    /// Encodes the dimension as one number, for terms of formulas: whole powers of m, kg, s and rad, 16 bits each.
     pub fn mark(self) -> u64 {
         let powers = [self.length, self.mass, self.time, self.angle];
         // Units have whole powers; a power beyond 16 bits fits nothing.
@@ -102,19 +102,20 @@ impl Dimension {
         powers.into_iter().fold(0, |mark, power| mark << 16 | bits(power))
     }
 
-    /// Whole powers of m, kg, s and rad; roots are cut off.
+    /// Whole powers of m, kg, s and rad; fractions of powers are cut off.
     pub fn powers(self) -> [i32; 4] {
         [self.length, self.mass, self.time, self.angle].map(|power| power / ONE)
     }
 
-    /// Of a mark.
+    /// Decodes a mark.
     pub fn of_mark(mark: u64) -> Self {
         let power = |index: u32| i32::from((mark >> (16 * index)) as u16 as i16);
         Self::of(power(3), power(2), power(1), power(0))
     }
 
-    /// A quantity of this dimension made of a length, a mass and times: of several times in a denominator, the first is
-    /// `time`, and all others are `others`.
+    /// A quantity of this dimension made of a length, a mass and two times: the first of several times in the
+    /// denominator
+    /// is `time`, all others are `others`.
     pub fn size(self, [length, mass, time, others]: [f64; 4]) -> f64 {
         let power = |base: f64, exponent: i32| math::pow(base, f64::from(exponent) / f64::from(ONE));
         let times = match self.time {
@@ -124,28 +125,27 @@ impl Dimension {
         power(length, self.length) * power(mass, self.mass) * times
     }
 
-    /// Whether quantities of the two may be added or stand for one another.
+    /// Whether quantities of the two may be added or replace one another.
     pub fn fits(self, other: Self) -> bool {
         Self { angle: 0, ..self } == Self { angle: 0, ..other }
     }
 
-    /// Whether it is an amount of something an angle.
+    /// Whether it is a quantity per angle.
     pub fn is_per_angle(self) -> bool {
         self.angle < 0
     }
 
-    /// Of the generalised force on a coordinate of this dimension: its conjugate: N on a length, N m on an
-    /// angle.
+    /// Dimension of the generalised force on a coordinate of this dimension: N on a length, N m on an angle.
     pub fn conjugate(self) -> Self {
         Self::TORQUE.per(Self { angle: 0, ..self })
     }
 
-    /// Of a product.
+    /// Dimension of a product.
     pub fn times(self, other: Self) -> Self {
         self.zip(other, i32::saturating_add)
     }
 
-    /// Of a quotient.
+    /// Dimension of a quotient.
     pub fn per(self, other: Self) -> Self {
         self.zip(other, i32::saturating_sub)
     }
@@ -159,7 +159,7 @@ impl Dimension {
         }
     }
 
-    /// Of a power; `None` where an exponent would not be a multiple of 1/12, or absurdly large.
+    /// Dimension of a power; `None` if an exponent would not be a multiple of 1/12, or would be absurdly large.
     pub fn to_the(self, exponent: f64) -> Option<Self> {
         let scale = |own: i32| {
             let scaled = f64::from(own) * exponent;
@@ -174,7 +174,7 @@ impl Dimension {
         })
     }
 
-    /// Of a sum: an angle only if both are.
+    /// Dimension of a sum: an angle only if both terms are.
     pub fn of_sum(self, other: Self) -> Self {
         if self.angle == other.angle { self } else { Self { angle: 0, ..self } }
     }
@@ -193,12 +193,12 @@ impl Dimension {
         }
     }
 
-    /// Whether the measured quantity has a name.
+    /// Whether the quantity has a name.
     pub fn is_named(self) -> bool {
         self.named().is_some()
     }
 
-    /// The SI unit as one writes it; empty for pure numbers.
+    /// The SI unit as written; empty for pure numbers.
     pub fn unit(self) -> String {
         if let Some((unit, _)) = self.named() {
             return unit.to_owned();

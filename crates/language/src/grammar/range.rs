@@ -4,19 +4,19 @@
 use super::unit::{Unit, number_and_unit};
 use crate::grammar::tuning::TUNING;
 
-/// What stands between the ends of an interval in other notations.
+/// Separators of the ends of an interval in other notations.
 const BETWEEN: [&str; 8] = ["–", "—", "…", "...", "..", " to ", " bis ", "-"];
 
-/// Two numbers with something between them, the smaller first.
+/// Two numbers with a separator between them, the smaller first.
 pub struct Range {
-    /// As an interval is written.
+    /// The range in the notation of intervals.
     pub interval: String,
     /// Whether the text is a difference of two numbers with units, or of two without.
     pub is_difference: bool,
 }
 
-/// A range in another notation than that of intervals. A difference is one only where its numbers are near each other,
-/// or where one of them alone has a unit.
+/// Reads a range in another notation than that of intervals. A difference is one only if its numbers are near each
+/// other, or if only one of them has a unit.
 pub fn range(text: &str) -> Option<Range> {
     let text = text.trim();
     let parts = |sign: &str| {

@@ -1,5 +1,5 @@
-//! Lists of what formulas may refer to, from the tables by which names are resolved: data for `mbint explain` and for
-//! the reference pages.
+//! Lists of the units, functions and names of formulas, from the tables that resolve them: data for `mbint explain` and
+//! for the reference pages.
 
 use serde::Serialize;
 use symdiff::formula::FUNCTIONS;
@@ -17,7 +17,7 @@ use super::unit::named_units;
 pub struct UnitDocs {
     /// As it is written.
     pub unit: &'static str,
-    /// The value of one of it in SI units.
+    /// The value of one of this unit in SI units.
     pub value: f64,
     /// The SI unit; empty for a pure number.
     pub si: String,
@@ -36,10 +36,10 @@ pub struct FunctionDocs {
     pub value: &'static str,
 }
 
-/// Something that an output may observe.
+/// A quantity that an output may observe.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct OutputDocs {
-    /// The kind of thing that has it; of an effect its keyword.
+    /// The kind of thing that has it; for an effect, its keyword.
     pub of: &'static str,
     /// The name, with names of the model's own things in capitals: `BODY.vx`.
     pub output: String,
@@ -67,7 +67,7 @@ pub fn functions() -> Vec<FunctionDocs> {
         domain: known.domain,
         value: known.value,
     };
-    // Of the parser: it is written out before there are functions.
+    // The parser expands `sum` before it resolves functions.
     let sum = FunctionDocs {
         function: "sum(i, a..b, term)".to_owned(),
         domain: "whole a ≤ b",

@@ -5,11 +5,11 @@
 pub enum JointCoordinate {
     /// Angle of the second frame against the first about the joint's axis, rad, never wrapped.
     Angle,
-    /// Of the second point from the first along the joint's axis, m.
+    /// Displacement of the second point from the first along the joint's axis, m.
     Displacement,
 }
 
-/// Something that an effect measures, by its name; elements may have their own.
+/// A quantity that an effect measures, by its name; elements may have their own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Sensor {
     name: &'static str,
@@ -19,35 +19,37 @@ pub struct Sensor {
 }
 
 impl Sensor {
-    /// Between two points.
+    /// Distance between two points.
     pub const LENGTH: Self = Self::of_motion("length");
-    /// Of a spring or of teeth.
+    /// Angle of a spring or of teeth.
     pub const ANGLE: Self = Self::of_motion("angle").along_joint();
-    /// Between two surfaces.
+    /// Gap between two surfaces.
     pub const GAP: Self = Self::of_motion("gap");
-    /// Of a length, an angle or a gap.
+    /// Rate of a length, an angle or a gap.
     pub const RATE: Self = Self::of_motion("rate").along_joint();
-    /// Of a joint with friction.
+    /// Load of a joint with friction.
     pub const LOAD: Self = Self::of_force("load");
     /// The force.
     pub const FORCE: Self = Self::of_force("force");
-    /// The torque; of a beam that at its end.
+    /// The torque; for a beam, that at its end.
     pub const TORQUE: Self = Self::of_force("torque");
-    /// Of a beam at its start.
+    /// Torque of a beam at its start.
     pub const START_TORQUE: Self = Self::of_force("start_torque");
-    /// Between two surfaces.
+    /// Friction between two surfaces.
     pub const FRICTION: Self = Self::of_force("friction");
     /// Tension between two points, whatever the sign of the effect's own force.
     pub const AXIAL: Self = Self::of_force("axial");
 
-    /// Of a state; the name of the effect alone stands for it too.
+    /// Value of a state; the name of the effect alone refers to it too.
     pub const VALUE: Self = Self::of_motion("value");
-    /// How fast a state changes.
+    /// Rate of change of a state.
     pub const CHANGE: Self = Self::of_force("rate");
 
-    /// Places and parts of the forces that an effect applies at points, for pictures: of each of a few pairs of bodies
-    /// x, y and z of the
-    /// place, then of the force on the second. No formula of a file can have such a name.
+    /// Locations and components of the forces that an effect applies at points, for pictures. For each of up to three
+    /// pairs
+    /// of bodies: x, y and z of the location, then of the force on the second body. No formula of a file can have such
+    /// a
+    /// name.
     pub const THRUSTS: [[Self; 6]; 3] = [
         Self::of_thrust(["<x 0>", "<y 0>", "<z 0>", "<fx 0>", "<fy 0>", "<fz 0>"]),
         Self::of_thrust(["<x 1>", "<y 1>", "<z 1>", "<fx 1>", "<fy 1>", "<fz 1>"]),
@@ -59,29 +61,29 @@ impl Sensor {
         [x, y, z, Self::of_force(fx), Self::of_force(fy), Self::of_force(fz)]
     }
 
-    /// What follows from positions, velocities and states alone, so that the effect's own formulas may refer to it.
+    /// A measure of positions, velocities and states alone, so the effect's own formulas may refer to it.
     pub const fn of_motion(name: &'static str) -> Self {
         Self { name, is_motion: true, has_unit: true, is_along_joint: false }
     }
 
-    /// What follows from the forces.
+    /// A measure that depends on the forces.
     pub const fn of_force(name: &'static str) -> Self {
         Self { name, is_motion: false, has_unit: true, is_along_joint: false }
     }
 
-    /// The same where nothing says in which unit.
+    /// The same with an unknown unit.
     #[must_use]
     pub const fn of_unknown_unit(self) -> Self {
         Self { has_unit: false, ..self }
     }
 
-    /// The same, counted along the coordinate of the joint that the effect is on, if it is on one.
+    /// The same, counted along the coordinate of the effect's joint, if it is on one.
     #[must_use]
     pub const fn along_joint(self) -> Self {
         Self { is_along_joint: true, ..self }
     }
 
-    /// What pushes a joint's coordinate.
+    /// Generalised force on a joint's coordinate.
     pub fn of_effort(coordinate: JointCoordinate) -> Self {
         match coordinate {
             JointCoordinate::Angle => Self::TORQUE,
@@ -94,12 +96,12 @@ impl Sensor {
         self.name
     }
 
-    /// Whether it follows from positions, velocities and states alone.
+    /// Whether it depends on positions, velocities and states alone.
     pub fn is_motion(self) -> bool {
         self.is_motion
     }
 
-    /// Whether it is counted along a joint's coordinate: in a mirror it changes its sign where that joint turns.
+    /// Whether it is counted along a joint's coordinate: in a mirror it changes its sign if that joint turns.
     pub fn is_along_joint(self) -> bool {
         self.is_along_joint
     }

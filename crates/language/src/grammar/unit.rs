@@ -1,4 +1,4 @@
-//! Numbers with units: the units there are, and `120 mm` → 0.12 m.
+//! Numbers with units: all units, and `120 mm` → 0.12 m.
 
 use std::f64::consts::PI;
 
@@ -19,10 +19,10 @@ pub struct Unit {
 }
 
 impl Unit {
-    /// Of a pure number.
+    /// The unit of a pure number.
     pub const ONE: Self = Self { times: 1.0, over: 1.0, dimension: Dimension::NUMBER };
 
-    /// A value in this unit, in SI.
+    /// Converts a value in this unit to SI.
     pub fn to_si(self, value: f64) -> f64 {
         value * self.times / self.over
     }
@@ -32,7 +32,7 @@ impl Unit {
         self.times == self.over
     }
 
-    /// `N*s/m`, `kg m^2`, `N·m`, `1/s`, `N/(m/s)`, …
+    /// Parses `N*s/m`, `kg m^2`, `N·m`, `1/s`, `N/(m/s)`, …
     ///
     /// # Errors
     /// The error and its span in the text.
@@ -45,9 +45,9 @@ impl Unit {
         }
     }
 
-    /// The unit with which a text begins, in a formula, and its length. Behind an operator that stands between spaces,
-    /// a name of the model is not part of the unit (`250 kg/m * L`), nor are, behind any operator, functions
-    /// and words of formulas.
+    /// The unit with which a text in a formula begins, and its length. After an operator between spaces, a name of the
+    /// model
+    /// is not part of the unit (`250 kg/m * L`); after any operator, neither are functions and words of formulas.
     ///
     /// # Errors
     /// The error and its span in the text.
@@ -58,7 +58,7 @@ impl Unit {
         Ok((parser.checked(unit)?, length))
     }
 
-    /// A number with the unit behind it, in a formula.
+    /// A number with the unit after it, in a formula.
     ///
     /// # Errors
     /// As of [`Self::leading`].
@@ -91,11 +91,11 @@ pub struct UnitError {
     pub message: String,
     /// Bytes of the text.
     pub span: Span,
-    /// What would be right.
+    /// Suggested correction.
     pub help: Option<String>,
 }
 
-/// Names of units that are written out, and their signs.
+/// Names of units that are written out, and their symbols.
 const WORDS: [(&str, &str); 19] = [
     ("meter", "m"),
     ("metre", "m"),
@@ -118,7 +118,7 @@ const WORDS: [(&str, &str); 19] = [
     ("percent", "%"),
 ];
 
-/// Name, and what one of it is in SI: a product and a divisor.
+/// Name, value of one in SI as a factor and a divisor, and dimension.
 const UNITS: [(&str, f64, f64, Dimension); 63] = [
     ("m", 1.0, 1.0, Dimension::LENGTH),
     ("km", 1e3, 1.0, Dimension::LENGTH),
@@ -198,12 +198,12 @@ struct UnitParser<'t> {
     depth: usize,
     /// Whether minutes or hours are part of the unit.
     minutes: bool,
-    /// Names of a formula, in which the unit ends where the formula goes on.
+    /// Names of the formula that continues after the unit; `None` if the text is a unit alone.
     is_name: Option<&'t dyn Fn(&str) -> bool>,
 }
 
 impl UnitParser<'_> {
-    /// Refuses a frequency that does not say of what.
+    /// Refuses a frequency that may be in revolutions or radians.
     fn checked(&self, unit: Unit) -> Result<Unit, UnitError> {
         if !(unit.dimension == Dimension::NUMBER.per(Dimension::TIME) && self.minutes) {
             return Ok(unit);
@@ -216,7 +216,7 @@ impl UnitParser<'_> {
         })
     }
 
-    /// Whether a formula goes on at this place of the text, before an operator or a word.
+    /// Whether the formula continues at an index of the text, before an operator or a word.
     fn ends_before(&self, index: usize) -> bool {
         let Some(is_name) = self.is_name else { return false };
         let rest = &self.text[index..];
@@ -229,7 +229,7 @@ impl UnitParser<'_> {
         let word = behind.split(|c: char| !is_part_of_name(c)).next().unwrap_or("");
         let after = behind[word.len()..].trim_start();
         if word.is_empty() {
-            // A group of units, or a formula in parentheses; only behind an operator is either in its place.
+            // A group of units, or a formula in parentheses; either is allowed only after an operator.
             let group =
                 UnitParser { text: behind, position: 0, depth: self.depth, minutes: false, is_name: None }.power();
             return !(operator && behind.starts_with('(') && group.is_ok());
@@ -349,7 +349,7 @@ impl UnitParser<'_> {
     }
 }
 
-/// The sign of a unit whose name is written out, in the plural or not.
+/// The symbol of a unit whose name is written out, in the plural or not.
 fn in_words(name: &str) -> Option<&'static str> {
     let name = name.to_lowercase();
     let known = |word: &str| WORDS.iter().find(|(known, _)| *known == word).map(|(_, sign)| *sign);
@@ -360,8 +360,9 @@ pub(super) fn is_part_of_name(c: char) -> bool {
     c.is_alphanumeric() && c != '²' && c != '³' || c == '_' || c == '°'
 }
 
-/// Splits `120 mm` into the number and the unit's text with its place; `None` where the text is not of that form
-/// (then it is a formula: no formula has a letter directly behind its first number).
+/// Splits `120 mm` into the number, the unit's text and its offset; `None` if the text is not of that form (then it is
+/// a
+/// formula: no formula has a letter directly after its first number).
 pub fn number_and_unit(text: &str) -> Option<(f64, &str, usize)> {
     let start = text.len() - text.trim_start().len();
     let bytes = text.as_bytes();
@@ -385,7 +386,7 @@ pub fn number_and_unit(text: &str) -> Option<(f64, &str, usize)> {
     (first.is_alphabetic() || first == '°' || first == '%').then_some((number, unit, unit_start))
 }
 
-/// The number of `30/min` or `30 1/min`, which does not say of what.
+/// The number of `30/min` or `30 1/min`, which may be in revolutions or radians.
 pub fn per_minute(text: &str) -> Option<&str> {
     let before = text.trim().strip_suffix("min")?.trim_end().strip_suffix('/')?.trim_end();
     let number = before.strip_suffix('1').map(|rest| rest.trim_end()).filter(|rest| rest.len() + 1 < before.len());

@@ -1,4 +1,4 @@
-//! What to say of a name in a formula that stands for nothing.
+//! Errors of unknown names in formulas.
 
 use super::motions::{ANGULAR_MOTIONS, JOINT_MOTIONS, MOTIONS, is_motion};
 use super::names::{Context, ENERGIES, NameError, OF_TRAJECTORY, motions};
@@ -7,7 +7,7 @@ use super::symbols::{Sensor, SymbolTable};
 use crate::syntax::frame::PLACE;
 use crate::syntax::suggest;
 
-/// What to say of a part that an effect does not have.
+/// Error of a measure that an effect does not have.
 pub fn no_measure(effect: &str, rest: &str, measures: &[(Sensor, Dimension)]) -> NameError {
     let names: Vec<&str> = measures.iter().map(|(measure, _)| measure.name()).collect();
     let after = effect.len() + 1;
@@ -18,7 +18,7 @@ pub fn no_measure(effect: &str, rest: &str, measures: &[(Sensor, Dimension)]) ->
     }
 }
 
-/// Why a name stands for nothing.
+/// Error of an unknown name.
 pub fn unknown(table: &impl SymbolTable, name: &str, context: Context) -> NameError {
     let shown = suggest::clip(name);
     for (prefix, what) in [("link.", "link"), ("joint.", "joint")].into_iter().filter(|_| table.is_robot()) {
@@ -39,14 +39,13 @@ pub fn unknown(table: &impl SymbolTable, name: &str, context: Context) -> NameEr
     }
 }
 
-/// Whether a parameter is one that the model says, and not one that follows from places of instances, or that an
-/// excitation is as a constant.
+/// Whether the model declares a parameter, rather than the placement of an instance or the deviation of an excitation.
 fn is_said(table: &impl SymbolTable, parameter: &str) -> bool {
     let owner = parameter.split('.').next().filter(|owner| owner.len() < parameter.len());
     !parameter.contains(PLACE) && owner.is_none_or(|owner| table.trajectory(owner).is_none())
 }
 
-/// Why a name of an instance stands for nothing.
+/// Error of an unknown name in an instance.
 fn in_instance(table: &impl SymbolTable, name: &str, instance: &str, context: Context) -> NameError {
     let is_owner =
         |owner: &str| table.body(owner).is_some() || table.joint(owner).is_some() || table.effect(owner).is_some();
@@ -153,7 +152,7 @@ fn unknown_member(table: &impl SymbolTable, name: &str, owner: &str, rest: &str,
     }
 }
 
-/// Why a body, by name and index, has no such part.
+/// Error of an unknown part of a body, given by name and index.
 fn unknown_in_body(table: &impl SymbolTable, name: &str, owner: &str, body: usize, rest: &str) -> NameError {
     let after = owner.len() + 1;
     let points = table.points(body);
@@ -206,7 +205,7 @@ fn unknown_in_body(table: &impl SymbolTable, name: &str, owner: &str, body: usiz
     }
 }
 
-/// What can be said of a joint.
+/// Help that lists the parts of a joint.
 fn parts_of_joint(table: &impl SymbolTable, name: &str) -> String {
     let mut parts = if table.is_spatial() {
         vec!["force", "force.x", "force.y", "force.z", "torque", "torque.x", "torque.y", "torque.z"]

@@ -1,4 +1,4 @@
-//! What stands behind a key, for the schema: numbers, vectors, directions, rotations.
+//! Schemas of values of keys: numbers, vectors, directions, rotations.
 
 use schemars::JsonSchema;
 
@@ -14,14 +14,14 @@ schema_only! {
         Text(String),
     }
 
-    /// A unit, `mm` or `N*s/m`; `1` of a number.
+    /// A unit, `mm` or `N*s/m`; `1` for a pure number.
     #[schemars(untagged, inline)]
     pub enum UnitName {
         Name(String),
         One(f64),
     }
 
-    /// Components along x and y, and in space along z, which is 0 where it is left out.
+    /// Components along x and y, and in space along z, which is 0 if omitted.
     #[schemars(untagged, inline)]
     pub enum Components {
         Planar([Number; 2]),
@@ -42,7 +42,7 @@ schema_only! {
         Z,
     }
 
-    /// A number of the frame's axes each, or one for all.
+    /// A number for each axis of the frame, or one for all.
     #[schemars(untagged, inline)]
     pub enum PerAxis {
         All(Number),
