@@ -1,9 +1,9 @@
-//! The cure where keys stand beside the kind that they belong to.
+//! Help for keys that are written next to the kind that they belong to.
 
 use crate::syntax::suggest::clip;
 use crate::syntax::yaml::Entry;
 
-/// What to write where keys stand beside the kind that they belong to, or the kind is the value of one.
+/// Help for keys that are written next to the kind that they belong to, or of which one has the kind as its value.
 pub fn within_kind(known: &[&str], entries: &[Entry]) -> Option<String> {
     let is_kind = |text: &str| known.contains(&text);
     let mut kinds = entries.iter().filter(|entry| is_kind(&entry.key));

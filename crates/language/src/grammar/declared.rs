@@ -1,11 +1,11 @@
-//! States, of which the names are known before anything is read that may speak of them.
+//! States, whose names are known before anything that may refer to them is read.
 
 use std::collections::HashMap;
 
 use super::quantity::Dimension;
 use super::symbols::Sensor;
 
-/// What a state measures: its value, and how fast it changes.
+/// Measures of a state: its value, and its rate of change.
 type Measures = [(Sensor, Dimension); 2];
 
 /// States by name, with their units as far as these are known.
@@ -16,7 +16,7 @@ pub struct DeclaredStates {
 }
 
 impl DeclaredStates {
-    /// Makes a name known; of several of the same name the first stands.
+    /// Declares a name; of several states of the same name, the first counts.
     pub fn add(&mut self, name: &str) {
         self.indices.entry(name.to_owned()).or_insert(self.measures.len());
         self.measures.push([Sensor::VALUE, Sensor::CHANGE].map(|sensor| (sensor.of_unknown_unit(), Dimension::NUMBER)));
@@ -28,19 +28,19 @@ impl DeclaredStates {
         (!self.measures[index][0].0.has_unit()).then_some(index)
     }
 
-    /// Says what a state measures.
+    /// Sets the dimension of a state.
     pub fn set(&mut self, index: usize, dimension: Dimension) {
         self.measures[index] = [(Sensor::VALUE, dimension), (Sensor::CHANGE, dimension.per(Dimension::TIME))];
     }
 
-    /// Measure of a name, with the name's index; nothing for other names, and nothing within for other measures.
+    /// Measure of a state, with the state's index; `None` for other names, `Some(None)` for other measures.
     pub(super) fn measure(&self, name: &str, member: &str) -> Option<Option<(usize, Sensor)>> {
         let index = *self.indices.get(name)?;
         let found = self.measures[index].iter().find(|(sensor, _)| sensor.name() == member);
         Some(found.map(|&(sensor, _)| (index, sensor)))
     }
 
-    /// Measure of the state with an index.
+    /// Measures of the state with an index.
     pub(super) fn measures_of(&self, index: usize) -> &[(Sensor, Dimension)] {
         self.measures.get(index).map_or(&[], |measures| measures)
     }

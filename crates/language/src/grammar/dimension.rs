@@ -2,8 +2,7 @@
 //!
 //! A bare number is a pure factor in a product with a parameter, and takes the other side's dimension in a sum. In a
 //! product with `t` or a motion (`-5*slider.vx`, `sin(2*t)`) it may be a coefficient of any unit, so such a product
-//! fits
-//! anywhere. A parameter without unit fits anywhere, and so do formulas of it.
+//! fits anywhere. A parameter without unit fits anywhere, and so do formulas of it.
 
 use symdiff::formula::Term;
 use symdiff::{Binary, Formula, Spline, Unary};
@@ -57,8 +56,7 @@ pub struct Mismatch {
 }
 
 /// Dimension of a formula. `name` gives that of each name, `table` those of a table's argument and value; mismatches
-/// are
-/// added to `mismatches`.
+/// are added to `mismatches`.
 pub fn analyse(
     formula: &Formula,
     name: impl FnMut(&str) -> KnownDimension,

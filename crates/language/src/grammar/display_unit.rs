@@ -20,7 +20,7 @@ impl DisplayUnit {
         Self { text: text.trim().to_owned(), unit }
     }
 
-    /// Of a pure number: `1`.
+    /// The unit of a pure number: `1`.
     pub fn number() -> Self {
         Self { text: "1".to_owned(), unit: Unit::ONE }
     }
@@ -30,28 +30,28 @@ impl DisplayUnit {
         self.unit.dimension
     }
 
-    /// What one of it is in SI.
+    /// Value of one of this unit in SI.
     pub fn si(&self) -> f64 {
         self.unit.to_si(1.0)
     }
 }
 
-/// The unit that people see numbers in: the one that the model declares, or SI.
+/// The unit in which numbers are shown: the one that the model declares, or SI.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShownUnit<'u> {
     /// As models write it: `N*m`; empty for a number.
     pub text: &'u str,
-    /// What one of it is in SI.
+    /// Value of one of this unit in SI.
     pub si: f64,
 }
 
 impl<'u> ShownUnit<'u> {
-    /// The declared unit, or `unit`, which is of SI.
+    /// The declared unit, or the SI unit `unit`.
     pub fn of(declared: &'u Option<DisplayUnit>, unit: &'u str) -> Self {
         declared.as_ref().map_or(Self::from(unit), |declared| Self { text: &declared.text, si: declared.si() })
     }
 
-    /// A value in SI, in this unit.
+    /// Converts a value in SI to this unit.
     pub fn of_si(self, value: f64) -> f64 {
         value / self.si
     }

@@ -1,4 +1,4 @@
-//! Numbers and formulas behind keys: parsed, their names resolved, their dimensions and values checked.
+//! Numbers and formulas of keys: parses them, resolves their names, checks their dimensions and values.
 
 use std::cell::RefCell;
 
@@ -22,13 +22,13 @@ use crate::syntax::source::Span;
 use crate::syntax::suggest::clip;
 use crate::syntax::yaml::{Node, Scalar};
 
-/// What stands in a field: a number with its unit, or a formula.
+/// Content of a field: a number with its unit, or a formula.
 pub enum Written {
     /// A number with its unit.
     Quantity {
-        /// In the unit.
+        /// The number, in the unit.
         value: f64,
-        /// The unit; one where there is none.
+        /// The unit.
         unit: Unit,
     },
     /// A formula.
@@ -36,7 +36,7 @@ pub enum Written {
 }
 
 impl<S: SymbolTable> Reader<'_, S> {
-    /// What stands in a field, its names not yet looked at.
+    /// Reads the content of a field, without resolving its names.
     pub fn written(&mut self, node: &Node) -> Option<Written> {
         let written = self.unsigned(node)?;
         let is_negated = node.scalar().and_then(|scalar| scalar.scope.as_ref()).is_some_and(|scope| scope.is_negated());
@@ -47,7 +47,7 @@ impl<S: SymbolTable> Reader<'_, S> {
         })
     }
 
-    /// The same without the sign that a mirror gives it.
+    /// The same without the sign of a mirror.
     fn unsigned(&mut self, node: &Node) -> Option<Written> {
         let scalar = self.scalar(node, "a number or a formula")?;
         if is_toleranced(&scalar.text) {
@@ -75,7 +75,7 @@ impl<S: SymbolTable> Reader<'_, S> {
                 self.error(Code::MisplacedTolerance, node.span.clone(), "`%` can stand only in a tolerance", help);
                 return None;
             }
-            // What goes on behind the unit makes a formula of it.
+            // More text after the unit makes it a formula.
             match Unit::leading(unit, |name| self.is_name(name, own_names.as_ref())) {
                 Ok((found, length)) if length == unit.len() => {
                     self.like_names = self.like_names(value, unit, own_names.as_ref());
@@ -92,7 +92,7 @@ impl<S: SymbolTable> Reader<'_, S> {
         self.parse(node, scalar, 0..scalar.text.len()).map(Written::Formula)
     }
 
-    /// The formula in a part of a scalar.
+    /// Parses the formula in a part of a scalar.
     pub fn parse(&mut self, node: &Node, scalar: &Scalar, part: Span) -> Option<Formula> {
         let text = &scalar.text[part.clone()];
         let infinite = text.trim().trim_start_matches(['+', '-']).to_lowercase();
@@ -138,7 +138,7 @@ impl<S: SymbolTable> Reader<'_, S> {
         }
     }
 
-    /// Whether a word is a name that formulas may use, and so no unit where both may stand.
+    /// Whether a word is a name that formulas may use, and so no unit if it could be both.
     pub(super) fn is_name(&self, word: &str, own: Option<&OwnNames>) -> bool {
         if let Some(own) = own {
             return own.index(word).is_some() || self.is_name(&own.full(word), None);
@@ -149,7 +149,7 @@ impl<S: SymbolTable> Reader<'_, S> {
             || self.symbol(word).is_some()
     }
 
-    /// Whether every name of the formula may stand in the context; `offset` is where the formula begins in the scalar.
+    /// Whether the context allows every name of the formula; `offset` is the formula's first byte in the scalar.
     pub fn check_names(&mut self, node: &Node, formula: &Formula, offset: usize, context: Context) -> bool {
         let mut all_known = true;
         let own = self.variable.map(|(name, _)| name);
@@ -197,12 +197,12 @@ impl<S: SymbolTable> Reader<'_, S> {
         all_known
     }
 
-    /// What a name stands for; effects that are not in the model are numbered after those that are.
+    /// Symbol of a name; effects that are not in the model are numbered after those that are.
     pub fn symbol(&self, name: &str) -> Option<Symbol> {
         names::symbol(&self.model, name).or_else(|| self.unread_measure(name)?.ok())
     }
 
-    /// What a name stands for where it may stand for that.
+    /// Symbol of a name, or an error if it is unknown or the context does not allow it.
     pub fn resolve(&self, name: &str, context: Context) -> Result<Symbol, NameError> {
         match names::symbol(&self.model, name) {
             Some(symbol) => names::allowed(name, symbol, context),
@@ -271,7 +271,7 @@ impl<S: SymbolTable> Reader<'_, S> {
         names::kind(symbol, &self.kinds)
     }
 
-    /// A formula or a number with its unit, of a dimension.
+    /// Reads a formula or a number with its unit, of a dimension.
     pub fn formula(&mut self, node: &Node, context: Context, wanted: Dimension) -> Option<Formula> {
         let formula = match self.written(node)? {
             Written::Quantity { value, unit } => {
@@ -311,7 +311,7 @@ impl<S: SymbolTable> Reader<'_, S> {
         Some(formula)
     }
 
-    /// A formula or a number with unit that has the required dimension.
+    /// Reads a formula or a number with its unit that meets the requirements of a key.
     pub fn quantity(&mut self, node: &Node, quantity: &Quantity) -> Option<Formula> {
         let formula = self.formula(node, quantity.context, quantity.dimension())?;
         if let Some(Requirement { holds, message }) = quantity.requirement {
@@ -334,7 +334,7 @@ impl<S: SymbolTable> Reader<'_, S> {
         Some(formula)
     }
 
-    /// A number that is the same for every sample.
+    /// Reads a number that is the same for every sample.
     pub fn number(&mut self, node: &Node, wanted: Dimension) -> Option<f64> {
         let formula = self.formula(node, Context::Constant, wanted)?;
         if self.is_uncertain(&formula) {
@@ -346,7 +346,7 @@ impl<S: SymbolTable> Reader<'_, S> {
     }
 }
 
-/// The place of a part of a name that may be longer than it is written.
+/// The location of a part of a name whose written text may be shorter.
 fn part_of_name(name: &str, written: &Span, part: Span) -> Span {
     let before = name.len().saturating_sub(written.len());
     if part.start < before || name.len() < written.len() {
@@ -355,7 +355,7 @@ fn part_of_name(name: &str, written: &Span, part: Span) -> Span {
     written.start + part.start - before..(written.start + part.end - before).min(written.end)
 }
 
-/// The formula's value, each name's given by `name`.
+/// The formula's value; `name` gives the value of each name.
 pub fn evaluate(formula: &Formula, name: impl Fn(&str) -> Option<f64>) -> Option<f64> {
     let builder = Builder::new();
     let built = formula.build(&builder, |text| name(text).map(|value| builder.number(value)).ok_or(()));

@@ -1,9 +1,9 @@
-//! What values of keys are to an instance that is mirrored or turned.
+//! Images of values of keys in a mirrored or turned instance.
 //!
-//! The type of a key says it ([`super::Value::IMAGE`]), or the key itself: `#[key(image = Turning)]`. So a new element
-//! has its images by its struct.
+//! The type of a key determines its image ([`super::Value::IMAGE`]), or the key itself does: `#[key(image = Turning)]`.
+//! So the struct of a new element gives its images.
 
-/// What a value is to a mirror.
+/// Image of a value in a mirror.
 #[derive(Clone, Copy, Debug)]
 pub enum Image {
     /// The same: a length, a stiffness, a name.
@@ -16,13 +16,13 @@ pub enum Image {
     Polars,
     /// A rotation: its axis is axial, its angle stays.
     Rotation,
-    /// Factors along three axes, or one for all: that across a mirror changes its sign.
+    /// Factors along three axes, or one for all: the factor across a mirror changes its sign.
     Factors,
-    /// A number that counts the other way where the joint of `on` turns, or there is none.
+    /// A number that changes its sign if the joint of `on` turns, or if there is no `on`.
     Turning,
-    /// A number that counts the other way where the joint of `on` turns.
+    /// A number that changes its sign if the joint of `on` turns.
     Effort,
-    /// The end of a range: it changes its key with the other end, and counts the other way as [`Image::Turning`].
+    /// The end of a range: it exchanges its key with the other end, and changes its sign as [`Image::Turning`].
     End(&'static str),
     /// A number along an axis, 0 to 2.
     Along(usize),
@@ -32,7 +32,7 @@ pub enum Image {
     Product([usize; 2]),
     /// A polar vector, or a mapping with keys of its own.
     PolarOr(fn() -> Vec<KeyImage>),
-    /// A mapping by names, of which each has this image.
+    /// A mapping by names, each of whose values has this image.
     Named(&'static Image),
     /// A shape, or a list of them.
     Shapes,
@@ -49,10 +49,10 @@ pub enum Image {
 pub struct KeyImage {
     /// As it is written.
     pub name: &'static str,
-    /// What its value is to a mirror.
+    /// Image of its value in a mirror.
     pub image: Image,
     /// Whether its components are along the axes of the ground, so that they turn with an instance.
     pub in_ground: bool,
-    /// What holds where the key is not there.
+    /// Default of the key.
     pub default: Option<serde_json::Value>,
 }

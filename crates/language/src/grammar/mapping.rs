@@ -4,7 +4,7 @@ use super::image::{Image, KeyImage};
 
 /// A mapping of the file whose keys are fixed.
 pub trait Grammar {
-    /// What the mapping is, for messages: `a body`.
+    /// Noun of the mapping, for messages: `a body`.
     const WHAT: &'static str;
     /// Its keys, in the order in which they are suggested.
     const KEYS: &'static [&'static str];
@@ -18,7 +18,7 @@ pub trait Grammar {
     }
 }
 
-/// The key of a field; one that is a word of Rust is written `r#final`.
+/// The key of a field; one that is a keyword of Rust is written `r#final`.
 pub const fn key(field: &'static str) -> &'static str {
     match field.as_bytes() {
         [b'r', b'#', ..] => field.split_at(2).1,
@@ -53,7 +53,7 @@ macro_rules! __grammar {
     )*};
 }
 
-/// Types of which only the schema is used: values that a key may have.
+/// Types used only for their schema: values that a key may have.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! __schema_only {

@@ -1,7 +1,7 @@
-//! What a model file is made of: elements with their keys, quantities with units, names, and the reader that keeps
-//! places.
+//! Grammar of model files: elements with their keys, quantities with units, names, and the reader, which records
+//! locations.
 //!
-//! Nothing here knows what a model is: names are those of a [`SymbolTable`], which the model fills as it is read.
+//! Nothing here depends on the model: names are those of a [`SymbolTable`], which the model fills as it is read.
 
 mod any_unit;
 mod beside_kind;

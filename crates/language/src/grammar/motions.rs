@@ -67,8 +67,7 @@ pub fn motion_name(coordinate: Coordinate, order: TimeOrder) -> &'static str {
 }
 
 /// The name of a derivative of a coordinate of a body or a joint: `block.vx` for `block.x`. The coordinate's own name
-/// if
-/// its derivatives have none.
+/// if its derivatives have none.
 pub fn derivative_name(coordinate: &str, order: TimeOrder) -> String {
     let derivative = coordinate.rsplit_once('.').and_then(|(owner, position)| {
         let of_body = MOTIONS.iter().find(|(name, ..)| *name == position).map(|(_, of, _)| motion_name(*of, order));

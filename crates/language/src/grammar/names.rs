@@ -1,4 +1,4 @@
-//! What a name in a formula means: the one place that decides it.
+//! Meaning of names in formulas: only this module determines it.
 
 use std::ops::Range;
 
@@ -12,14 +12,14 @@ use super::symbols::{Coordinate, EnergyKind, PointRef, ReactionComponent, Sensor
 /// The ground's name.
 pub const GROUND: &str = "ground";
 
-/// Names without a dot that are taken.
+/// Reserved names of energies.
 pub const ENERGIES: [(&str, EnergyKind); 3] = [
     ("energy", EnergyKind::Total),
     ("kinetic_energy", EnergyKind::Kinetic),
     ("potential_energy", EnergyKind::Potential),
 ];
 
-/// What stands between a joint and the point about which its reaction's torque is asked for.
+/// Separator of a joint and the point about which its reaction torque is taken.
 const TORQUE_AT: &str = ".torque_at.";
 
 /// Context of a formula, which decides the names it may use.
@@ -40,18 +40,18 @@ pub enum Context {
     Output,
 }
 
-/// A name that means nothing, or nothing here.
+/// A name that is unknown, or not allowed here.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NameError {
     /// Description of the error.
     pub message: String,
     /// The part of the name that is wrong, in bytes.
     pub part: Range<usize>,
-    /// What would be right.
+    /// Suggested correction.
     pub help: Option<String>,
 }
 
-/// What the word is by itself in every formula, so that nothing else may be called so; `None` where it is nothing.
+/// Meaning of a word that is reserved in every formula; `None` for other words.
 pub fn meaning(name: &str) -> Option<&'static str> {
     let is_function = |name| symdiff::formula::FUNCTIONS.iter().any(|own| own.name == name && own.is_reserved());
     match name {
@@ -64,12 +64,12 @@ pub fn meaning(name: &str) -> Option<&'static str> {
     }
 }
 
-/// Whether the word means something by itself in every formula.
+/// Whether a word is reserved in every formula.
 pub fn is_reserved(name: &str) -> bool {
     meaning(name).is_some()
 }
 
-/// What a name in a formula stands for; `None` where it stands for nothing.
+/// Symbol of a name in a formula; `None` if it is unknown.
 pub fn symbol(table: &impl SymbolTable, name: &str) -> Option<Symbol> {
     if let Some(found) = of_robot(table, name) {
         return Some(found);
@@ -141,7 +141,7 @@ pub(super) fn place(table: &impl SymbolTable, name: &str) -> Option<PointRef> {
     Some(PointRef { body, point: Some(point) })
 }
 
-/// A point of a body, by both names: of a link that is welded to another, points have the link's name in theirs.
+/// A point of a body, by both names: points of a link that is welded to another have the link's name in theirs.
 fn point_of_body(table: &impl SymbolTable, name: &str) -> Option<(usize, usize)> {
     name.rmatch_indices('.').find_map(|(dot, _)| {
         let body = table.body(&name[..dot])?;
@@ -150,12 +150,12 @@ fn point_of_body(table: &impl SymbolTable, name: &str) -> Option<(usize, usize)>
     })
 }
 
-/// `s2.deviation`: how far a parameter is from the value that it follows. `body.arm.mass`: a number of a robot's file.
+/// `s2.deviation`: deviation of a parameter from the value it follows. `body.arm.mass`: a number of a robot's file.
 fn deviation(table: &impl SymbolTable, name: &str) -> Option<Symbol> {
     table.parameter(name).map(Symbol::Parameter)
 }
 
-/// `rod.end.x`, `rod.element1.torque`: of a node or an element of a beam.
+/// `rod.end.x`, `rod.element1.torque`: quantities of a node or an element of a beam.
 fn of_beam(table: &impl SymbolTable, name: &str) -> Option<Symbol> {
     let (owner, member) = name.rsplit_once('.')?;
     body_motion(table, owner, member).or_else(|| measure(table, owner, member))
@@ -221,7 +221,7 @@ fn trajectory(table: &impl SymbolTable, owner: &str, member: &str) -> Option<Sym
     Some(Symbol::Trajectory { trajectory, order })
 }
 
-/// A name that has a value.
+/// The value of a state, by its name alone.
 fn state(table: &impl SymbolTable, name: &str) -> Option<Symbol> {
     measure_of(table, table.state(name)?, Sensor::VALUE.name())
 }
@@ -258,7 +258,7 @@ fn joint_motion(table: &impl SymbolTable, joint: &str, member: &str) -> Option<S
     table.has_coordinate(joint, coordinate).then_some(Symbol::JointCoordinate { joint, coordinate, order })
 }
 
-/// Members of every joint that speak of its reaction.
+/// Members of every joint that refer to its reaction.
 pub const REACTIONS: [&str; 5] = ["force", "torque", "force_body", "torque_body", "torque_at"];
 
 fn reaction(table: &impl SymbolTable, joint: &str, member: &str, part: Option<&str>) -> Option<Symbol> {
@@ -320,7 +320,7 @@ fn measure_of(table: &impl SymbolTable, effect: usize, member: &str) -> Option<S
     Some(Symbol::Sensor { effect, measure })
 }
 
-/// What a name stands for, or why that may not stand here.
+/// Returns the symbol of a name, or an error if the context does not allow it.
 pub fn allowed(name: &str, symbol: Symbol, context: Context) -> Result<Symbol, NameError> {
     let refusal = match (context, symbol) {
         (Context::Output, _) | (_, Symbol::Parameter(_)) => None,
@@ -378,8 +378,8 @@ pub fn allowed(name: &str, symbol: Symbol, context: Context) -> Result<Symbol, N
     }
 }
 
-/// The dimension of what a name stands for; `parameters` has those of the parameters. Those of reactions of equations,
-/// trajectories, black boxes and of what effects measure are the reader's.
+/// The dimension of a symbol; `parameters` has those of the parameters. The reader knows those of reactions of
+/// equations, trajectories, black boxes and measures of effects.
 pub fn kind(symbol: Symbol, parameters: &[KnownDimension]) -> KnownDimension {
     KnownDimension::motion(match symbol {
         Symbol::Parameter(index) => return parameters.get(index).copied().unwrap_or(KnownDimension::Any),

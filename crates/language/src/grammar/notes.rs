@@ -1,4 +1,4 @@
-//! How readers note names and formulas, where an editor asks for them.
+//! Readers' records of names and formulas, for an editor.
 
 use symdiff::formula::Term;
 use symdiff::{Formula, Unary};
@@ -18,7 +18,7 @@ impl Report<'_> {
         }
     }
 
-    /// Notes that an entry gives a name its meaning.
+    /// Records that an entry defines a name.
     pub fn defines(&self, kind: NameKind, name: &str, entry: &Entry) {
         self.note(|all| {
             let extent = entry.key_span.start..entry.value.span.end.max(entry.key_span.end);
@@ -27,12 +27,12 @@ impl Report<'_> {
         });
     }
 
-    /// Notes the use of a name.
+    /// Records the use of a name.
     pub fn mentions(&self, kind: Option<NameKind>, name: &str, span: &Span) {
         self.note(|all| all.uses.push(Mention { name: name.to_owned(), kind, span: span.clone() }));
     }
 
-    /// Notes the use of the name that a node is.
+    /// Records the use of the name in a node.
     pub fn mentions_node(&self, kind: Option<NameKind>, node: &Node) {
         if let Some(scalar) = node.scalar() {
             let text = 0..scalar.text.len();
@@ -43,7 +43,7 @@ impl Report<'_> {
         }
     }
 
-    /// Notes the names of a formula that begins at a byte of a scalar.
+    /// Records the names of a formula that begins at a byte of a scalar.
     pub fn mentions_names(&self, node: &Node, scalar: &Scalar, formula: &Formula, offset: usize) {
         self.note(|all| {
             all.uses.extend(formula.names().map(|(name, span)| {
@@ -53,7 +53,7 @@ impl Report<'_> {
         });
     }
 
-    /// Notes a formula that begins at a byte of a node, with the dimensions of its terms.
+    /// Records a formula that begins at a byte of a node, with the dimensions of its terms.
     pub fn mentions_formula(&self, node: &Node, offset: usize, formula: &Formula, kinds: &[KnownDimension]) {
         self.note(|all| {
             let start = node.scalar().and_then(|scalar| scalar.start).map(|start| start + offset);
@@ -64,7 +64,7 @@ impl Report<'_> {
 }
 
 impl<S: SymbolTable> Reader<'_, S> {
-    /// Notes the tables of a formula that begins at a byte of a scalar: a call begins with the name of its table.
+    /// Records the tables of a formula that begins at a byte of a scalar: a call begins with the name of its table.
     pub(super) fn mentions_tables(&self, node: &Node, scalar: &Scalar, formula: &Formula, offset: usize) {
         for (term, span) in formula.terms() {
             let Term::Unary(Unary::Spline(spline, _), _) = term else { continue };

@@ -11,7 +11,7 @@ use super::symbols::{JointCoordinate, OnJoint, Reference, SymbolTable};
 use crate::syntax::codes::Code;
 use crate::syntax::yaml::Node;
 
-/// `on` and `coordinate`: a joint's coordinate. Units that depend on it are those of a displacement, then those of an
+/// `on` and `coordinate`: a joint's coordinate. Units that depend on it are listed for a displacement, then for an
 /// angle.
 impl Group for OnJoint {
     fn key_names() -> Vec<&'static str> {
@@ -62,7 +62,7 @@ impl Group for OnJoint {
     }
 }
 
-/// Where `on` is there.
+/// `on` and `coordinate`, which may be absent.
 impl Group for Option<OnJoint> {
     fn key_names() -> Vec<&'static str> {
         OnJoint::key_names()
@@ -103,7 +103,7 @@ impl Group for Option<OnJoint> {
 }
 
 impl JointCoordinate {
-    /// The place of its units in those of a key: `m or rad`.
+    /// Index of its unit among those of a key: `m or rad`.
     pub fn unit_choice(self) -> usize {
         match self {
             Self::Displacement => 0,

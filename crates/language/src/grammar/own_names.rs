@@ -1,4 +1,4 @@
-//! What names stand for in a copy of a piece of the file, for the parser of formulas.
+//! Meanings of names in a copy of a piece of the file, for the parser of formulas.
 
 use symdiff::formula::Names;
 use symdiff::formula::indices::Index;
@@ -11,7 +11,7 @@ use crate::syntax::yaml::Scalar;
 /// The names of a scalar in a copy of a piece of the file.
 pub(super) struct OwnNames<'s> {
     pub(super) scope: &'s Scope,
-    /// A name that the formula has for itself.
+    /// Own variable of the formula.
     variable: Option<&'static str>,
 }
 
@@ -37,16 +37,16 @@ impl Names for OwnNames<'_> {
     }
 }
 
-/// A word of a unit that the model has as a name, too.
+/// A word of a unit that is also a name of the model.
 #[derive(Clone, Debug)]
 pub struct LikeName {
     pub(super) word: String,
-    /// With spaces, so that the word is the model's.
+    /// The value with spaces, so that the word is the model's.
     pub(super) spaced: String,
-    /// With a number of its own, so that it is the unit.
+    /// The value with a number before the word, so that it is the unit.
     pub(super) as_unit: String,
     pub(super) dimension: Dimension,
-    /// Of all of the unit.
+    /// Dimension of the whole unit.
     pub(super) whole: Dimension,
 }
 

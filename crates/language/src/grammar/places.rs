@@ -200,8 +200,7 @@ impl<S: SymbolTable> Reader<'_, S> {
     }
 
     /// Reads the joint of `on`, and its coordinate: that of `coordinate`, else the displacement if the joint only
-    /// slides,
-    /// else the angle.
+    /// slides, else the angle.
     pub fn on_joint(&mut self, fields: &Fields) -> Option<OnJoint> {
         let coordinate = fields.get("coordinate").map(|node| {
             let names = [("angle", JointCoordinate::Angle), ("displacement", JointCoordinate::Displacement)];

@@ -1,4 +1,4 @@
-//! What leaves the plane, by the text alone: it is decided before anything is read.
+//! Whether values leave the plane, determined from the text alone, before anything is read.
 
 use crate::syntax::yaml::{Node, Value};
 

@@ -114,8 +114,7 @@ impl Dimension {
     }
 
     /// A quantity of this dimension made of a length, a mass and two times: the first of several times in the
-    /// denominator
-    /// is `time`, all others are `others`.
+    /// denominator is `time`, all others are `others`.
     pub fn size(self, [length, mass, time, others]: [f64; 4]) -> f64 {
         let power = |base: f64, exponent: i32| math::pow(base, f64::from(exponent) / f64::from(ONE));
         let times = match self.time {

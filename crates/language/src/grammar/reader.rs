@@ -20,18 +20,18 @@ use crate::syntax::yaml::Entry;
 pub struct Reader<'d, S> {
     /// Errors and warnings so far.
     pub report: Report<'d>,
-    /// Names first, then their meanings.
+    /// Symbols of the model: first their names, then their meanings.
     pub model: S,
-    /// Effects that are not in the model, with their sensors: the last is being read, and its own formulas may
-    /// refer to that; the others had errors.
+    /// Effects that are not in the model, with their sensors: the last is being read, and its own formulas may refer to
+    /// it; the others had errors.
     pub unread: Vec<(String, Vec<(Sensor, Dimension)>)>,
-    /// Names of joints that had errors, so that of what kind they are is not known.
+    /// Names of joints that had errors, so their kinds are not known.
     pub unread_joints: Vec<String>,
     /// Names of outputs that had errors.
     pub unread_outputs: Vec<String>,
     /// States that are known before they are read.
     pub declared: DeclaredStates,
-    /// A name of its own that the formula being read may use, and its dimension.
+    /// Own variable of the formula being read, and its dimension.
     pub variable: Option<(&'static str, Dimension)>,
     /// Dimension of each parameter.
     pub kinds: Vec<KnownDimension>,
@@ -39,25 +39,25 @@ pub struct Reader<'d, S> {
     pub corners: Vec<Corner>,
     /// For each parameter the corners at which its value is not the nominal one, ascending.
     pub corners_of: Vec<Vec<usize>>,
-    /// Whether the parameter's value is uncertain.
+    /// Whether each parameter's value is uncertain.
     pub varies: Vec<bool>,
     /// Parameters whose nominal values are to be chosen: other samples may have other values.
     pub free: HashSet<String>,
     /// Whether a parameter has no value because of an error that was reported.
     pub broken: bool,
-    /// Parameters that something speaks of, other parameters aside.
+    /// Whether each parameter is used, other parameters aside.
     pub used: Vec<bool>,
-    /// Trajectories that something speaks of.
+    /// Trajectories that are used.
     pub used_trajectories: HashSet<usize>,
-    /// Parameters that others speak of.
+    /// Whether each parameter is used by other parameters.
     pub used_by_parameters: Vec<bool>,
     /// Parameters that vary in omitted parts only.
     pub idle: HashSet<String>,
     /// Parameters whose interval has no width.
     pub certain: HashSet<String>,
-    /// Words of units that the model has as names, of the value read last.
+    /// Words of units in the value read last that are also names of the model.
     pub like_names: Vec<LikeName>,
-    /// Lengths of which some may be in another unit.
+    /// Lengths, some of which may be in another unit.
     pub lengths: Lengths,
     /// Functions that the file gives by their values.
     pub tables: Vec<FunctionTable>,
@@ -66,11 +66,11 @@ pub struct Reader<'d, S> {
 /// Lengths of a model seen so far.
 #[derive(Clone, Debug, Default)]
 pub struct Lengths {
-    /// Bare numbers that are large, with what to write.
+    /// Locations of large bare numbers, each with its help.
     pub(super) large: Vec<(Span, String)>,
-    /// Parameters without units that were looked at.
+    /// Parameters without units that were examined.
     pub(super) said: HashSet<String>,
-    /// Whether there is a small one.
+    /// Whether there is a small length.
     pub(super) small: bool,
 }
 
@@ -81,7 +81,7 @@ pub struct FunctionTable {
     pub name: String,
     /// Interpolation of its values.
     pub spline: Spline,
-    /// Of argument and value, where the file says so.
+    /// Dimensions of argument and value, if the file gives them.
     pub dimensions: [Option<Dimension>; 2],
 }
 
@@ -138,7 +138,7 @@ impl<S> DerefMut for Reader<'_, S> {
 }
 
 impl<S: SymbolTable> Reader<'_, S> {
-    /// Whether the key can be a name; reports where it cannot.
+    /// Whether the key can be a name; reports an error if it cannot.
     pub fn name(&mut self, entry: &Entry, what: &str) -> bool {
         // The text before the last dot is checked where instances are made.
         let is_part = |known: &str| entry.key.strip_prefix(known).is_some_and(|rest| rest.starts_with('.'));

@@ -1,7 +1,7 @@
 //! Errors and warnings of reading, and the shapes of nodes: mappings with known keys, words, lists.
 //!
-//! A report knows no names of a model: whatever turns one tree into another needs no more. Reading goes on after an
-//! error, so that one run reports as many as can be found; a method gives `None` only when it has reported why.
+//! A report knows no names of a model; conversions of one tree into another need no more. Reading continues after an
+//! error, so that one run reports as many as can be found; a method returns `None` only when it has reported why.
 
 use std::cell::Cell;
 use std::collections::HashMap;
@@ -25,27 +25,27 @@ use crate::syntax::yaml::{Entry, Node, Scalar, Value};
 pub struct Report<'d> {
     /// Errors and warnings so far.
     pub diagnostics: &'d mut Diagnostics,
-    /// Where files are that the model may name.
+    /// Folders of the files that the model may name.
     pub files: AllowedFolders,
-    /// Names and formulas that were read, where an editor asks for them.
+    /// Names and formulas that were read; `None` unless an editor asks for them.
     pub mentions: Option<&'d Notes>,
 }
 
 /// A mapping whose keys are known.
 pub struct Fields<'n> {
-    /// Where to say that something is missing.
+    /// Location at which missing keys are reported.
     pub at: Span,
     what: &'static str,
     keys: Vec<&'static str>,
     entries: HashMap<&'n str, (Span, &'n Node)>,
-    /// Keys that are not there, but which a key that is not known was probably meant to be: that is reported already.
+    /// Keys of which an unknown key is probably a misspelling, which has been reported.
     misspelt: Vec<&'static str>,
-    /// The error of the only unknown key without a similar known one: it is taken for the missing key.
+    /// Index of the error of the only unknown key without a similar known one: it is taken for the missing key.
     strange: Cell<Option<usize>>,
 }
 
 impl<'n> Fields<'n> {
-    /// A mapping of one key, whose value stands for all of it.
+    /// A mapping of one key, given by the key's value alone.
     pub fn single(what: &'static str, keys: Vec<&'static str>, key: &'n str, node: &'n Node, at: Span) -> Self {
         Self {
             at,
@@ -57,23 +57,23 @@ impl<'n> Fields<'n> {
         }
     }
 
-    /// The value of a key, if it is there.
+    /// The value of a key, if it is given.
     pub fn get(&self, key: &str) -> Option<&'n Node> {
         debug_assert!(self.keys.contains(&key), "`{key}` is not in the grammar of {}", self.what);
         self.entries.get(key).map(|(_, node)| *node)
     }
 
-    /// Whether a key is neither there nor, misspelt, reported.
+    /// Whether a key is missing, and is not reported as misspelt.
     pub fn lacks(&self, key: &str) -> bool {
         self.get(key).is_none() && !self.misspelt.contains(&key)
     }
 
-    /// Whether this holds of all of these keys, of which one would do.
+    /// Whether [`Self::lacks`] holds for all of these alternatives.
     pub fn lacks_all(&self, keys: &[&str]) -> bool {
         keys.iter().all(|key| self.lacks(key))
     }
 
-    /// The place of a key.
+    /// The location of a key; that for missing keys if it is not given.
     pub fn key_span(&self, key: &str) -> Span {
         self.entries.get(key).map_or_else(|| self.at.clone(), |(span, _)| span.clone())
     }
@@ -85,7 +85,7 @@ impl Report<'_> {
         self.diagnostics.push(Diagnostic::error(code, span, message).help(help));
     }
 
-    /// The entries of a mapping with free keys; nothing written is an empty mapping.
+    /// The entries of a mapping with free keys; an empty value is an empty mapping.
     pub fn entries<'n>(&mut self, node: &'n Node, what: &str) -> &'n [Entry] {
         match &node.value {
             Value::Mapping(entries) => entries,
@@ -98,8 +98,7 @@ impl Report<'_> {
         }
     }
 
-    /// The same where others refer to these names: those that are unknown are not reported where these could not be
-    /// read.
+    /// The same for names that others refer to: unknown names are not reported if these could not be read.
     pub fn named_entries<'n>(&mut self, node: &'n Node, what: &str) -> &'n [Entry] {
         let entries = self.entries(node, what);
         if !matches!(node.value, Value::Mapping(_)) && !node.is_null() {
@@ -108,12 +107,12 @@ impl Report<'_> {
         entries
     }
 
-    /// A mapping with the keys of `G`; `at` is where to say that one is missing.
+    /// Reads a mapping with the keys of `G`; missing ones are reported at `at`.
     pub fn fields<'n, G: Grammar>(&mut self, node: &'n Node, at: Span) -> Option<Fields<'n>> {
         self.mapping(G::WHAT, G::KEYS.to_vec(), node, at)
     }
 
-    /// A mapping with these keys; `at` is where to say that one is missing.
+    /// Reads a mapping with these keys; missing ones are reported at `at`.
     pub fn mapping<'n>(
         &mut self,
         what: &'static str,
@@ -156,7 +155,7 @@ impl Report<'_> {
         Some(Fields { at, what, keys, entries, misspelt, strange })
     }
 
-    /// The value of a key that must be there.
+    /// The value of a required key; reports an error if it is missing.
     pub fn required<'n>(&mut self, fields: &Fields<'n>, key: &str) -> Option<&'n Node> {
         let found = fields.get(key);
         if fields.lacks(key) && !self.is_strange(fields, key) {
@@ -165,8 +164,7 @@ impl Report<'_> {
         found
     }
 
-    /// Whether a key that is missing may be what the only one that is not known was meant to be: its error then says
-    /// so.
+    /// Whether the only unknown key may have been meant as the missing key: its error then says so.
     pub fn is_strange(&mut self, fields: &Fields, key: &str) -> bool {
         let strange = fields.strange.take();
         strange.inspect(|&error| self.diagnostics.also_missing(error, key)).is_some()
@@ -218,7 +216,7 @@ impl Report<'_> {
         }
     }
 
-    /// Whether this can be the name of `what`; reports where it cannot.
+    /// Whether this can be the name of `what`; reports an error if it cannot.
     pub fn is_name(&mut self, name: &str, at: &Span, what: &str) -> bool {
         let mut letters = name.chars();
         let well_formed = letters.next().is_some_and(|c| c.is_alphabetic() || c == '_')
@@ -238,7 +236,7 @@ impl Report<'_> {
         well_formed
     }
 
-    /// Whether a text can be the name of something that has a folder of results; reports where it cannot.
+    /// Whether a text can be the name of something that has a folder of results; reports an error if it cannot.
     pub fn is_folder_name(&mut self, name: &str, span: Span, what: &str) -> bool {
         if name.is_empty() {
             let help = "write one, or leave the key out: a model is called like its file".to_owned();
@@ -254,7 +252,7 @@ impl Report<'_> {
         fine
     }
 
-    /// A piece of text that is there.
+    /// The text of a node; reports an error if there is none.
     pub fn scalar<'n>(&mut self, node: &'n Node, wanted: &str) -> Option<&'n Scalar> {
         match node.scalar() {
             Some(scalar) if !scalar.is_null() => Some(scalar),
@@ -270,7 +268,7 @@ impl Report<'_> {
         }
     }
 
-    /// The text of a file that a node names, in the model's folder, and where it begins among the sources.
+    /// Reads a file that a node names, in the model's folder: its offset among the sources, and its text.
     pub fn file(&mut self, node: &Node) -> Option<(usize, String)> {
         let scalar = self.scalar(node, "the name of a file")?;
         let found = self.files.find(Path::new(""), &scalar.text).and_then(|path| {
@@ -318,8 +316,7 @@ impl Report<'_> {
         None
     }
 
-    /// By what a rotation is given, `rpy`, `axis` or `quaternion`, and its keys; `at` is where to say that something
-    /// is missing.
+    /// The key that gives a rotation, `rpy`, `axis` or `quaternion`, and all keys; missing ones are reported at `at`.
     pub fn kind_of_rotation<'n>(&mut self, node: &'n Node, at: Span) -> Option<(&'static str, Fields<'n>)> {
         let fields = self.fields::<values::Rotation>(node, at)?;
         let given: Vec<&'static str> =
@@ -342,7 +339,7 @@ impl Report<'_> {
         Some((kind, fields))
     }
 
-    /// Reports two keys of which only one may be there, at the first.
+    /// Reports two keys that exclude each other, at the first.
     pub fn exclude(&mut self, fields: &Fields, [first, second]: [&str; 2]) {
         if fields.get(first).is_some() && fields.get(second).is_some() {
             self.error(
@@ -354,7 +351,7 @@ impl Report<'_> {
         }
     }
 
-    /// Reports where something stands that does not belong there.
+    /// Whether a dimension fits the one that belongs there; reports an error if it does not.
     pub fn check_fits(&mut self, span: &Span, found: Dimension, wanted: Dimension) -> bool {
         let fits = found.fits(wanted);
         if !fits {

@@ -4,23 +4,23 @@ use super::names::Context;
 use super::quantity::Dimension;
 use super::unit::Unit;
 
-/// What the number of a key must be.
+/// Requirements on the number of a key.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Quantity {
-    /// As one writes it; several units are divided by ` or `.
+    /// Unit as written; several units are separated by ` or `.
     pub unit: &'static str,
-    /// Which of them holds.
+    /// Index of the applicable unit.
     pub choice: usize,
-    /// What a formula may depend on.
+    /// Dependencies that a formula may have.
     pub context: Context,
-    /// What must hold at every corner of the parameters.
+    /// Requirement at every corner of the parameters.
     pub requirement: Option<Requirement>,
-    /// Instead of the unit's, where that depends on other keys.
+    /// Dimension instead of that of the unit, if it depends on other keys.
     pub dimension: Option<Dimension>,
 }
 
 impl Quantity {
-    /// What its unit measures.
+    /// Dimension of the number: the given one, else that of the applicable unit.
     pub fn dimension(&self) -> Dimension {
         if let Some(dimension) = self.dimension {
             return dimension;
@@ -32,12 +32,12 @@ impl Quantity {
     }
 }
 
-/// What must hold of a number.
+/// Requirement on a number.
 #[derive(Clone, Copy, Debug)]
 pub struct Requirement {
-    /// Whether it does.
+    /// Whether a number meets it.
     pub holds: fn(f64) -> bool,
-    /// What to say where it does not: `must be positive`.
+    /// Message if a number does not: `must be positive`.
     pub message: &'static str,
 }
 
@@ -46,8 +46,8 @@ impl Requirement {
     pub const POSITIVE: Self = Self { holds: |value| value > 0.0, message: "must be positive" };
     /// 0 or above.
     pub const NONNEGATIVE: Self = Self { holds: |value| value >= 0.0, message: "must not be negative" };
-    /// The keyword of the schema that says with 0 what the requirement refuses of negative numbers and 0; `None` where
-    /// a negative number may do.
+    /// Keyword of the schema that, with the limit 0, refuses the negative numbers and 0 that the requirement refuses;
+    /// `None` if some negative number meets the requirement.
     pub fn limit(&self) -> Option<&'static str> {
         let refused = [-1e9, -1.0, -1e-3, -1e-9].into_iter().all(|value| !(self.holds)(value));
         refused.then(|| if (self.holds)(0.0) { "minimum" } else { "exclusiveMinimum" })

@@ -46,10 +46,8 @@ impl Sensor {
     pub const CHANGE: Self = Self::of_force("rate");
 
     /// Locations and components of the forces that an effect applies at points, for pictures. For each of up to three
-    /// pairs
-    /// of bodies: x, y and z of the location, then of the force on the second body. No formula of a file can have such
-    /// a
-    /// name.
+    /// pairs of bodies: x, y and z of the location, then of the force on the second body. No formula of a file can have
+    /// such a name.
     pub const THRUSTS: [[Self; 6]; 3] = [
         Self::of_thrust(["<x 0>", "<y 0>", "<z 0>", "<fx 0>", "<fy 0>", "<fz 0>"]),
         Self::of_thrust(["<x 1>", "<y 1>", "<z 1>", "<fx 1>", "<fy 1>", "<fz 1>"]),

@@ -1,7 +1,7 @@
-//! Names in formulas of instances that are placed or mirrored: there they have their meaning in the assembly.
+//! Names in formulas of placed or mirrored instances, where they have their meaning in the assembly.
 //!
-//! An assembly's formula is written in the assembly's frame. What stands for it in an instance has the coordinates of
-//! the model instead: of a place s = D Rᵀ (r − g), and so on ([`crate::syntax::frame`]).
+//! An assembly's formula is written in the assembly's frame. The formula of an instance has the coordinates of the
+//! model instead: for a position s = D Rᵀ (r − g), and so on ([`crate::syntax::frame`]).
 
 use symdiff::{Formula, Unary};
 
@@ -12,7 +12,7 @@ use crate::syntax::scope::Scope;
 use crate::syntax::yaml::Node;
 
 impl<S: SymbolTable> Reader<'_, S> {
-    /// A formula of an instance as one of the model.
+    /// Converts a formula of an instance to one of the model.
     pub(super) fn in_model(&self, formula: Formula, scope: &Scope) -> Formula {
         match scope.frame() {
             Some(frame) => formula.with_names(|name| self.of_model(name, frame, &scope.full(PLACE))),
@@ -20,8 +20,8 @@ impl<S: SymbolTable> Reader<'_, S> {
         }
     }
 
-    /// What a name of an instance is in the model, where that is something else; `place` stands before the names of
-    /// the frame.
+    /// The formula that replaces a name of an instance in the model; `None` if the name stays. `place` is the prefix of
+    /// the frame's names.
     fn of_model(&self, name: &str, frame: InstanceFrame, place: &str) -> Option<Formula> {
         let text = match self.symbol(name)? {
             Symbol::JointCoordinate { coordinate: JointCoordinate::Angle, .. } if frame.mirrors.is_odd() => {
@@ -61,14 +61,14 @@ impl<S: SymbolTable> Reader<'_, S> {
         (text != name).then(|| Formula::parse(&text).ok()).flatten()
     }
 
-    /// The names of the components of a vector by that of one; z is zero in the plane.
+    /// The names of a vector's components, from the name of one of them; z is zero in the plane.
     fn parts_of_vector(&self, name: &str) -> [String; 3] {
         let stem = &name[..name.len() - 1];
         ["x", "y", "z"]
             .map(|axis| if axis == "z" && !self.model.is_spatial() { "0".to_owned() } else { format!("{stem}{axis}") })
     }
 
-    /// Whether a name is of a number that has no formula in the frame of the instance that the formula is in.
+    /// Whether a symbol has no formula in the frame of the node's instance.
     pub(super) fn is_of_model(&self, node: &Node, symbol: Symbol) -> bool {
         let Some(frame) = node.scalar().and_then(|scalar| scalar.scope.as_deref()?.frame()) else { return false };
         let is_other = frame.is_turned() || frame.mirrors.axes().next().is_some();

@@ -1,5 +1,5 @@
-//! Values that are probably not meant as written: an angle of 30 rad, a length of 150 m beside others of millimetres,
-//! an interval that is a difference.
+//! Values that are probably not meant as written: an angle of 30 rad, a length of 150 m next to others of millimetres,
+//! an interval that is read as a difference.
 
 use symdiff::Formula;
 use symdiff::formula::Term;
@@ -15,7 +15,7 @@ use crate::syntax::suggest::clip;
 use crate::syntax::yaml::Node;
 
 impl<S: SymbolTable> Reader<'_, S> {
-    /// Looks at a formula where a quantity of a dimension belongs.
+    /// Examines a formula for a quantity of a dimension.
     pub(super) fn suspect_formula(&mut self, node: &Node, formula: &Formula, wanted: Dimension) {
         let (number, bare) = match (formula.as_number(), self.only_parameter(formula)) {
             (Some(number), _) => {
@@ -32,7 +32,7 @@ impl<S: SymbolTable> Reader<'_, S> {
         self.suspect_quantity(number, wanted);
         let Some((name, text)) = bare else { return };
         let of = name.as_ref().map_or_else(String::new, |name| format!(", for `{name}` in `parameters`"));
-        // A parameter is looked at where it stands first.
+        // A parameter is examined at its first use.
         let mut is_new = || name.as_ref().is_none_or(|name| self.lengths.said.insert(name.clone()));
         if wanted == Dimension::ANGLE && number.abs() > TUNING.turn && is_new() {
             let help =
@@ -46,7 +46,7 @@ impl<S: SymbolTable> Reader<'_, S> {
         }
     }
 
-    /// The parameter that a formula is, and nothing else.
+    /// Index and name of the parameter of a formula that is just that parameter.
     fn only_parameter(&self, formula: &Formula) -> Option<(usize, String)> {
         let [(Term::Name(name), _)] = formula.terms() else { return None };
         match self.symbol(name) {
@@ -55,8 +55,8 @@ impl<S: SymbolTable> Reader<'_, S> {
         }
     }
 
-    /// Whether a text is an interval in another notation, which is an error; warns of a difference that may be meant
-    /// as one.
+    /// Whether a text is an interval in another notation, which is an error; warns of a difference that may be meant as
+    /// one.
     pub(super) fn is_meant_as_interval(&mut self, node: &Node, text: &str) -> bool {
         let Some(Range { interval, is_difference }) = range(text) else { return false };
         let help = format!("an interval is written `{interval}`, in `parameters`");
@@ -75,12 +75,12 @@ impl<S: SymbolTable> Reader<'_, S> {
         !is_difference
     }
 
-    /// Looks at a number in SI.
+    /// Examines a number in SI.
     pub(super) fn suspect_quantity(&mut self, number: f64, wanted: Dimension) {
         self.lengths.small |= wanted == Dimension::LENGTH && number != 0.0 && number.abs() <= TUNING.small_length;
     }
 
-    /// Warns of large lengths beside small ones, once all are read.
+    /// Warns of large lengths next to small ones, after all are read.
     pub fn warn_of_lengths(&mut self) {
         if !self.lengths.small {
             return;

@@ -1,4 +1,4 @@
-//! What names stand for: the parts of a mechanism by their index.
+//! Meanings of names: the parts of a mechanism by their index.
 
 use symdiff::Formula;
 
@@ -6,7 +6,7 @@ use super::friction::{FrictionMode, MeshKind};
 use super::quantity::Dimension;
 pub use super::sensor::{JointCoordinate, Sensor};
 
-/// The names of a model, which fills the table as it is read. Bodies, joints and effects are numbered as they stand in
+/// The names of a model, which fills the table as it is read. Bodies, joints and effects are numbered in the order of
 /// the file; body 0 is the ground.
 pub trait SymbolTable {
     /// Whether the mechanism leaves the plane.
@@ -23,40 +23,40 @@ pub trait SymbolTable {
     fn joints(&self) -> impl Iterator<Item = &str> + Clone;
     /// Number of effects so far.
     fn effects(&self) -> usize;
-    /// The effect of a name.
+    /// The effect with a name.
     fn effect(&self, name: &str) -> Option<usize>;
-    /// The effect of a name, which may have a value by its name alone.
+    /// The effect with a name, if its name alone refers to its value.
     fn state(&self, name: &str) -> Option<usize>;
-    /// The trajectory of a name.
+    /// The trajectory with a name.
     fn trajectory(&self, name: &str) -> Option<usize>;
-    /// The dimension of a trajectory's value, where it is known.
+    /// The dimension of a trajectory's value, if it is known.
     fn trajectory_dimension(&self, trajectory: usize) -> Option<Dimension>;
-    /// The highest derivative that a trajectory has without jumps being lost, where only limits of it are known.
+    /// The highest derivative of an excitation that is known; `None` for other trajectories.
     fn derivatives(&self, trajectory: usize) -> Option<TimeOrder>;
-    /// What an effect measures.
+    /// Measures of an effect, with their dimensions.
     fn measures(&self, effect: usize) -> Vec<(Sensor, Dimension)>;
-    /// Where a link of the robot is.
+    /// The body or the point that a link of the robot is.
     fn link(&self, name: &str) -> Option<PointRef>;
-    /// Named parts of a beam; none without a beam of that name.
+    /// Names of the parts of a beam, in words; `None` if there is no beam of that name.
     fn parts_of_beam(&self, beam: &str) -> Option<String>;
-    /// Whether a body's orientation is that of Euler parameters, and not an angle about z.
+    /// Whether a body's orientation has Euler parameters instead of an angle about z.
     fn has_orientation(&self, body: usize) -> bool;
     /// Whether a joint has a coordinate.
     fn has_coordinate(&self, joint: usize, coordinate: JointCoordinate) -> bool;
-    /// Which of a joint's motions friction resists; nothing where friction does not act in it.
+    /// Motions of a joint that friction resists; `None` if friction does not act in it.
     fn friction_mode(&self, joint: usize) -> Option<FrictionMode>;
-    /// Which friction the teeth of a joint have; nothing where it has none.
+    /// Kind of friction of a joint's teeth; `None` if it has none.
     fn mesh_kind(&self, joint: usize) -> Option<MeshKind>;
-    /// Whether a joint joins two points, so that its reaction has a place.
+    /// Whether a joint joins two points, so that its reaction has a point of action.
     fn has_place(&self, joint: usize) -> bool;
     /// Whether a joint has an axis of its own, or drives a joint that has one.
     fn has_axis(&self, joint: usize) -> bool;
     /// Whether a joint's reaction has an `axial` part: along its axis, or along a line of its own.
     fn has_axial_force(&self, joint: usize) -> bool;
-    /// What a joint that is an equation sets equal to something else.
+    /// Left side of a joint that is an equation; `None` for other joints.
     fn equated(&self, joint: usize) -> Option<&Formula>;
 
-    /// The output of a black box of a name.
+    /// The output of a black box with a name.
     fn black_box(&self, name: &str) -> Option<usize>;
     /// The dimension of an output of a black box.
     fn black_box_dimension(&self, output: usize) -> Dimension;
@@ -65,27 +65,27 @@ pub trait SymbolTable {
 
     /// Names of the instances of assemblies, and of effects on many, which have dots in the names of their parts.
     fn instances(&self) -> impl Iterator<Item = &str> + Clone;
-    /// The body or the point of a body that a port of an instance is.
+    /// Name of the body or the point of a body that a port of an instance is.
     fn port(&self, name: &str) -> Option<&str>;
     /// Whether an effect of an instance is on a joint that turns.
     fn is_on_turning_joint(&self, effect: &str) -> bool;
 
-    /// The parameter of a name.
+    /// The parameter with a name.
     fn parameter(&self, name: &str) -> Option<usize> {
         self.parameters().position(|known| known == name)
     }
 
-    /// The body of a name.
+    /// The body with a name.
     fn body(&self, name: &str) -> Option<usize> {
         self.bodies().position(|known| known == name)
     }
 
-    /// The joint of a name.
+    /// The joint with a name.
     fn joint(&self, name: &str) -> Option<usize> {
         self.joints().position(|known| known == name)
     }
 
-    /// Ports and bodies of an instance, as they are called in it.
+    /// Ports and bodies of an instance, by their names in it.
     fn parts_of(&self, instance: &str) -> Vec<String>;
 
     /// The name of a joint.
@@ -124,7 +124,7 @@ impl Coordinate {
     }
 }
 
-/// A point of a body; the frame's origin where `point` is absent.
+/// A point of a body; the frame's origin if `point` is absent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PointRef {
     /// Index into the bodies; 0 is the ground.
@@ -133,7 +133,7 @@ pub struct PointRef {
     pub point: Option<usize>,
 }
 
-/// How often a quantity is differentiated by time.
+/// Order of a derivative by time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum TimeOrder {
     /// The value.
@@ -144,7 +144,7 @@ pub enum TimeOrder {
     Acceleration,
 }
 
-/// What a name in a formula stands for.
+/// Meaning of a name in a formula.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Symbol {
     /// Index of the parameter.
@@ -193,7 +193,7 @@ pub enum Symbol {
         body: usize,
         /// Index of the point in the body.
         point: usize,
-        /// Along which axis of the ground.
+        /// Axis of the ground.
         coordinate: Coordinate,
         /// The position or a derivative.
         order: TimeOrder,
@@ -205,7 +205,7 @@ pub enum Symbol {
         /// Which part of the reaction.
         component: ReactionComponent,
     },
-    /// `effect.length`, `effect.force`, …: what an effect measures.
+    /// `effect.length`, `effect.force`, …: a measure of an effect.
     Sensor {
         /// Index of the effect.
         effect: usize,
@@ -219,7 +219,7 @@ pub enum Symbol {
         /// Its value or a derivative.
         order: TimeOrder,
     },
-    /// What a black box answers, by its name.
+    /// An output of a black box, by its name.
     BlackBox {
         /// Index of its output.
         output: usize,
@@ -233,14 +233,14 @@ pub enum Symbol {
 pub enum ReactionComponent {
     /// Magnitude of the force, N.
     Force,
-    /// Along an axis (0 to 2: x, y, z), N.
+    /// Force along an axis (0 to 2: x, y, z), N.
     ForceAlong(usize),
-    /// About the second point, N m: in the plane the component about z; in space that about its axis where the joint
-    /// has a torque about its axis alone, else the magnitude.
+    /// Torque about the second point, N m: in the plane the component about z; in space the component about the joint's
+    /// axis if the joint has a torque about that alone, else the magnitude.
     Torque,
-    /// About an axis (0 to 2: x, y, z) through the second point, N m.
+    /// Torque about an axis (0 to 2: x, y, z) through the second point, N m.
     TorqueAbout(usize),
-    /// Force along the joint's own axis, N; of a rod its tension, of a cam its contact's force.
+    /// Force along the joint's own axis, N; for a rod its tension, for a cam its contact force.
     Axial,
     /// Force across the joint's own axis, N: the magnitude; along a direction of the plane, with a sign.
     Radial,
@@ -266,14 +266,14 @@ impl ReactionComponent {
     }
 }
 
-/// Which energy.
+/// Kind of energy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EnergyKind {
-    /// The sum of both.
+    /// Kinetic and potential energy.
     Total,
-    /// Of the motion.
+    /// Kinetic energy.
     Kinetic,
-    /// Of gravity and springs.
+    /// Potential energy of gravity and springs.
     Potential,
 }
 
@@ -293,13 +293,13 @@ impl OnJoint {
     }
 }
 
-/// An index in a joint, an effect or a value at the start.
+/// An index in a joint, an effect or an initial value.
 #[derive(Debug)]
 pub enum Reference<'a> {
-    /// Of a body.
+    /// Index of a body.
     Body(&'a mut usize),
-    /// Of a body, with one of its points.
+    /// Index of a body, with that of one of its points.
     Point(&'a mut PointRef),
-    /// Of a joint.
+    /// Index of a joint.
     Joint(&'a mut usize),
 }

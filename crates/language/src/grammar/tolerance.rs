@@ -1,4 +1,4 @@
-//! A number with how far it may be off, as one writes it in one piece: the only place that reads this notation.
+//! A number with its deviation, written in one piece: only this module reads this notation.
 //!
 //! ```text
 //! 0.5 m ± 1%          ± may be written +/- or +-; without a unit, the deviation has the value's
@@ -6,7 +6,7 @@
 //! 0.5 m +0.01 -0.02   upwards and downwards; no space between sign and number
 //! [0.49, 0.51] m      the smallest and the largest value; [490 mm, 0.51 m]
 //! 12 mm H7            a tolerance class: H7, g6, IT8, ISO 2768-m
-//! ± 1%, 1%, H7        the deviation alone, of a value that stands elsewhere
+//! ± 1%, 1%, H7        the deviation alone, of a value that is given elsewhere
 //! ```
 
 use super::fits::ToleranceClass;
@@ -16,25 +16,25 @@ use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use crate::syntax::yaml::{Node, Scalar, Value};
 
-/// What may stand between a value and its deviation.
+/// Signs between a value and its deviation.
 const SIGNS: [&str; 3] = ["±", "+/-", "+-"];
 
-/// What stands between the ends of a range.
+/// Separator of the ends of a range.
 const TO: &str = " to ";
 
-/// A number in parts, each with its place.
+/// A number in parts, each with its location.
 #[derive(Clone, Debug)]
 pub struct Toleranced {
-    /// The value, a number or a formula; absent where only the deviation is written.
+    /// The value, a number or a formula; absent if only the deviation is written.
     pub value: Option<Node>,
-    /// How far it may be off.
+    /// Its deviation.
     pub deviation: Option<Deviation>,
 }
 
-/// How far a number may be off.
+/// Permitted deviation of a number.
 #[derive(Clone, Debug)]
 pub enum Deviation {
-    /// As far upwards as downwards.
+    /// The same upwards and downwards.
     Either(Node),
     /// Upwards and downwards.
     Sides {
@@ -45,7 +45,7 @@ pub enum Deviation {
     },
     /// A list of the smallest and the largest value.
     Between(Node),
-    /// As a tolerance class has it, by the size.
+    /// That of a tolerance class, by the size.
     Class(Node),
 }
 
@@ -109,7 +109,7 @@ pub fn read(node: &Node) -> Result<Toleranced, Box<Diagnostic>> {
     Ok(Toleranced { value: Some(node.clone()), deviation: None })
 }
 
-/// The ends of `0.2 to 0.3 m`, `[0.2, 0.3] m` or a list; `None` of any other form.
+/// The ends of `0.2 to 0.3 m`, `[0.2, 0.3] m` or a list; `None` for any other form.
 ///
 /// # Errors
 /// An interval that is begun but not finished.
@@ -160,7 +160,7 @@ impl Text<'_> {
         Node { span: self.scalar.place(&self.node.span, range), value: Value::Scalar(scalar) }
     }
 
-    /// A part that has a unit, unless it has its own.
+    /// A part with a unit, unless it has its own.
     fn with_unit(&self, range: Span, unit: Option<&str>) -> Node {
         let text = &self.scalar.text[range.clone()];
         let part = self.part(range.clone());
@@ -213,7 +213,7 @@ impl Text<'_> {
     }
 }
 
-/// The tolerance class that ends a text, behind a number or alone.
+/// The tolerance class at the end of a text, after a number or alone.
 fn class(text: &str) -> Option<&str> {
     let is_behind_size = |at: usize| {
         let size = &text[..at];
@@ -231,7 +231,7 @@ fn own_unit(text: &str) -> Option<&str> {
     Unit::parse(unit).is_ok().then_some(unit)
 }
 
-/// The first `±` outside of parentheses: its place and its length.
+/// The first `±` outside of parentheses: its offset and its length.
 fn sign(text: &str) -> Option<(usize, usize)> {
     let mut depth = 0_usize;
     for (at, letter) in text.char_indices() {
@@ -249,7 +249,7 @@ fn sign(text: &str) -> Option<(usize, usize)> {
     None
 }
 
-/// `value +plus -minus`, in either order, perhaps with a `/` between: the places of the three, the deviations without
+/// `value +plus -minus`, in either order, perhaps with a `/` between: the spans of the three, the deviations without
 /// their signs. The value is a number or nothing, so that no formula is taken for it.
 fn sides(text: &str) -> Option<(Span, Span, Span)> {
     let mut found: Vec<(char, Span)> = Vec::new();

@@ -11,11 +11,11 @@ tuning! {
         formula_terms: usize = 10_000, moves "which formulas are refused";
         /// Angle that is taken for more than one turn, rad; a turn may be written with few digits.
         turn: f64 = 1.001 * TAU, moves "warnings of angles in degrees";
-        /// Length from which on a bare number is suspicious where others are small, m.
+        /// Length above which a bare number is suspicious if others are small, m.
         large_length: f64 = 100.0, moves "warnings of lengths in millimetres";
         /// Length below which a number makes large ones suspicious, m.
         small_length: f64 = 0.1, moves "warnings of lengths in millimetres";
-        /// Ratio of two numbers from which on they are near each other.
+        /// Smallest ratio of two numbers that are near each other.
         near: f64 = 0.5, moves "how ranges are written in messages";
     }
 }

@@ -46,8 +46,7 @@ impl Unit {
     }
 
     /// The unit with which a text in a formula begins, and its length. After an operator between spaces, a name of the
-    /// model
-    /// is not part of the unit (`250 kg/m * L`); after any operator, neither are functions and words of formulas.
+    /// model is not part of the unit (`250 kg/m * L`); after any operator, neither are functions and words of formulas.
     ///
     /// # Errors
     /// The error and its span in the text.
@@ -361,8 +360,7 @@ pub(super) fn is_part_of_name(c: char) -> bool {
 }
 
 /// Splits `120 mm` into the number, the unit's text and its offset; `None` if the text is not of that form (then it is
-/// a
-/// formula: no formula has a letter directly after its first number).
+/// a formula: no formula has a letter directly after its first number).
 pub fn number_and_unit(text: &str) -> Option<(f64, &str, usize)> {
     let start = text.len() - text.trim_start().len();
     let bytes = text.as_bytes();

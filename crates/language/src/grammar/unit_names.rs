@@ -1,4 +1,4 @@
-//! Units that are called like a name of the model, and units behind fractions.
+//! Units that are also names of the model, and units after fractions.
 
 use super::names::{self, Context};
 use super::own_names::{LikeName, OwnNames};
@@ -11,7 +11,7 @@ use crate::syntax::source::Span;
 use crate::syntax::yaml::Node;
 
 impl<S: SymbolTable> Reader<'_, S> {
-    /// Words of the unit behind a number that the model has as names.
+    /// Words of the unit after a number that are also names of the model.
     pub(super) fn like_names(&self, value: f64, unit: &str, own: Option<&OwnNames>) -> Vec<LikeName> {
         let words = later_words(unit);
         let Ok(Unit { dimension: whole, .. }) = Unit::parse(unit) else { return Vec::new() };
@@ -27,14 +27,14 @@ impl<S: SymbolTable> Reader<'_, S> {
         words.into_iter().filter_map(like).collect()
     }
 
-    /// What to do where the value read last does not fit: a unit is called like something of the model, or stands
-    /// behind a fraction.
+    /// Help if the value read last does not fit: a word of its unit is also a name of the model, or its unit is after a
+    /// fraction.
     pub(super) fn other_reading(&self, node: &Node) -> Option<String> {
         let like = self.like_names.last().map(LikeName::help);
         like.or_else(|| Some(of_fraction(&node.scalar()?.text)?.help()))
     }
 
-    /// Reports a unit of the value read last that the model's own of that name would fit as well.
+    /// Reports a word of the unit of the value read last if the model's name of that word would fit as well.
     pub(super) fn refuse_ambiguous(&mut self, node: &Node) {
         let is_alike = |like: &&LikeName| {
             let own =
@@ -46,15 +46,14 @@ impl<S: SymbolTable> Reader<'_, S> {
         }
     }
 
-    /// Reports a unit of the value read last that is called like something of the model, where no dimension is asked
-    /// for.
+    /// Reports a word of the unit of the value read last that is also a name of the model, for values of any dimension.
     pub fn refuse_like_names(&mut self, node: &Node) {
         if let Some(like) = self.like_names.first().cloned() {
             self.report(node, &like);
         }
     }
 
-    /// The same for a parameter, which is asked for its dimension where it stands: a torque is one, whatever `m` is.
+    /// The same for a parameter, unless its whole unit measures a named quantity: `N*m` is a torque, whatever `m` is.
     pub fn refuse_odd_units(&mut self, node: &Node) {
         if let Some(like) = self.like_names.iter().find(|like| !like.whole.is_named()).cloned() {
             self.report(node, &like);
@@ -67,7 +66,7 @@ impl<S: SymbolTable> Reader<'_, S> {
         self.error(Code::AmbiguousUnit, node.span.clone(), message, help);
     }
 
-    /// Warns of `3/4 in`, where no dimension is asked for.
+    /// Warns of `3/4 in`, for values of any dimension.
     pub fn warn_of_fraction(&mut self, node: &Node) {
         let Some(fraction) = node.scalar().and_then(|scalar| of_fraction(&scalar.text)) else { return };
         let message = format!("`{}` is {}", fraction.text, fraction.meaning());
@@ -97,18 +96,18 @@ impl Fraction<'_> {
         format!("{} {}/{}", self.above, self.unit, self.below)
     }
 
-    /// What to write for a part of a unit.
+    /// Help: how to write a fraction of a unit.
     pub(super) fn help(&self) -> String {
         format!("`{}` is {}; write `{}` for the part of a unit", self.text, self.meaning(), self.as_meant())
     }
 
-    /// The same where the fraction is in parentheses, behind which no unit stands.
+    /// The same for a fraction in parentheses, after which no unit is allowed.
     pub(super) fn help_in_parentheses(&self) -> String {
         format!("a unit stands behind a number; write `{}`", self.as_meant())
     }
 }
 
-/// The fraction of whole numbers that a text is, with a unit behind it.
+/// Parses a text that is a fraction of whole numbers with a unit after it.
 pub(super) fn of_fraction(text: &str) -> Option<Fraction<'_>> {
     let text = text.trim();
     let inner = text.strip_prefix('(').unwrap_or(text);
@@ -123,7 +122,7 @@ pub(super) fn of_fraction(text: &str) -> Option<Fraction<'_>> {
     is_one.then_some(Fraction { text, above: above.trim(), below, unit })
 }
 
-/// Words of a unit but the first, each with the operator before it.
+/// Words of a unit except the first, each with the operator before it.
 fn later_words(text: &str) -> Vec<(char, Span)> {
     let mut found = Vec::new();
     let mut end = 0;

@@ -14,7 +14,7 @@ use super::unknown;
 use crate::syntax::yaml::Node;
 
 impl<S: SymbolTable> Reader<'_, S> {
-    /// What an effect measures that is not in the model; nothing where the name is of something else.
+    /// Measure of an effect or a state that is not in the model; `None` if the name is of something else.
     pub(super) fn unread_measure(&self, name: &str) -> Option<Result<Symbol, NameError>> {
         if let Some(found) = self.declared.measure(name, Sensor::VALUE.name()) {
             return found.map(|(index, measure)| Ok(self.unread_sensor(self.unread.len() + index, measure)));
@@ -35,7 +35,7 @@ impl<S: SymbolTable> Reader<'_, S> {
         })
     }
 
-    /// Whether a name may be of a joint that had errors.
+    /// Whether a name may belong to a joint that had errors.
     pub(super) fn is_of_unread_joint(&self, name: &str) -> bool {
         name.split_once('.').is_some_and(|(owner, _)| self.unread_joints.iter().any(|unread| unread == owner))
     }
@@ -49,7 +49,7 @@ impl<S: SymbolTable> Reader<'_, S> {
         Symbol::Sensor { effect: self.model.effects() + index, measure }
     }
 
-    /// The dimension of what stands in a field, as far as names are known; nothing is reported.
+    /// The dimension of a field's value, as far as names are known; nothing is reported.
     pub fn quietly(&mut self, node: &Node) -> Option<Dimension> {
         let scalar = node.scalar()?;
         let own_names = OwnNames::of(scalar, self.variable);

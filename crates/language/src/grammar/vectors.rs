@@ -14,7 +14,7 @@ use crate::syntax::source::Span;
 use crate::syntax::yaml::{Node, Value};
 
 impl<S: SymbolTable> Reader<'_, S> {
-    /// Components of a dimension: two, in the plane z = 0, or three.
+    /// Reads components of a dimension: two, with z = 0, or three; in a planar model z is 0.
     pub fn components(&mut self, node: &Node, context: Context, wanted: Dimension) -> Option<[Formula; 3]> {
         if let Value::Sequence(items) = &node.value
             && let [_, _, third] = items.as_slice()
@@ -26,7 +26,7 @@ impl<S: SymbolTable> Reader<'_, S> {
         self.components_in_space(node, context, wanted)
     }
 
-    /// The same of what may leave the plane, such as a picture.
+    /// The same for values that may leave the plane, such as those of a picture.
     pub fn components_in_space(&mut self, node: &Node, context: Context, wanted: Dimension) -> Option<[Formula; 3]> {
         let items = self.two_or_three(node, "a list of two or three numbers")?;
         let mut read = items.iter().map(|item| self.formula(item, context, wanted)).collect::<Vec<_>>().into_iter();
@@ -46,20 +46,20 @@ impl<S: SymbolTable> Reader<'_, S> {
         None
     }
 
-    /// Something that a model which says `space: planar` cannot have.
+    /// Reports a value that a model with `space: planar` cannot have.
     pub fn leaves_the_plane(&mut self, node: &Node) {
         let help = "write `space: spatial`, or leave `space` out".to_owned();
         self.error(Code::NotPlanar, node.span.clone(), "this leaves the plane, but the model is planar", help);
     }
 
-    /// Three formulas of a dimension.
+    /// Reads three formulas of a dimension.
     pub fn three(&mut self, node: &Node, context: Context, wanted: Dimension) -> Option<[Formula; 3]> {
         let [x, y, z] = self.list_of(node, 3)? else { return None };
         let [x, y, z] = [x, y, z].map(|node| self.formula(node, context, wanted));
         Some([x?, y?, z?])
     }
 
-    /// A direction along which something moves: in the plane, where the mechanism is planar.
+    /// Reads a direction of a translation, in the plane if the mechanism is planar.
     pub fn direction(&mut self, node: &Node) -> Option<[Formula; 3]> {
         if !self.model.is_spatial() && plane::points_out(node) {
             self.leaves_the_plane(node);
@@ -67,7 +67,7 @@ impl<S: SymbolTable> Reader<'_, S> {
         self.axis(node)
     }
 
-    /// An axis about which something turns: z, where the mechanism is planar.
+    /// Reads an axis of a rotation, z if the mechanism is planar.
     pub fn rotation_axis(&mut self, node: &Node) -> Option<[Formula; 3]> {
         if !self.model.is_spatial() && plane::rotates_out(node) {
             self.leaves_the_plane(node);
@@ -75,7 +75,7 @@ impl<S: SymbolTable> Reader<'_, S> {
         self.axis(node)
     }
 
-    /// `x`, `y`, `z` or components of any length but zero.
+    /// Reads `x`, `y`, `z` or components of any length but zero.
     pub fn axis(&mut self, node: &Node) -> Option<[Formula; 3]> {
         let along = |axis: usize| [0, 1, 2].map(|other| Formula::number(f64::from(u8::from(axis == other))));
         match node.scalar().map(|scalar| scalar.text.as_str()) {
@@ -108,12 +108,12 @@ impl<S: SymbolTable> Reader<'_, S> {
         Some(axis)
     }
 
-    /// A rotation of parameters; `at` is where to say that something is missing.
+    /// Reads a rotation of parameters; missing keys are reported at `at`.
     pub fn rotation(&mut self, node: &Node, at: Span) -> Option<Rotation> {
         self.rotation_about(node, at, Self::rotation_axis)
     }
 
-    /// The same of what may leave the plane, such as a picture.
+    /// The same for values that may leave the plane, such as those of a picture.
     pub fn rotation_in_space(&mut self, node: &Node, at: Span) -> Option<Rotation> {
         self.rotation_about(node, at, Self::axis)
     }

@@ -76,8 +76,7 @@ impl Files {
 
 impl Names {
     /// Collects the names of a model; `known` is the last model that could be read, which distinguishes things of the
-    /// same
-    /// name.
+    /// same name.
     pub fn of(opened: &Opened, known: Option<&Description>) -> Self {
         let (sources, mut files) = (&opened.reading.diagnostics.sources, Files::default());
         let mut names = Self::default();

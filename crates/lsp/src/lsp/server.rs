@@ -65,8 +65,7 @@ pub fn serve(root: Option<PathBuf>) -> Result<(), ServerError> {
 }
 
 /// Serves the editor at the other end of a connection, as [`serve`] does. Returns whether it announced its exit; if
-/// not,
-/// it has closed its end.
+/// not, it has closed its end.
 ///
 /// # Errors
 /// If the protocol is not followed.

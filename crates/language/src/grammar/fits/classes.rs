@@ -10,7 +10,7 @@ const LETTERS: [&str; 28] = [
     "x", "y", "z", "za", "zb", "zc",
 ];
 
-/// Index of the last letters whose size does not pass the nominal one.
+/// Index of the last letters (h) of shafts that do not exceed the nominal size.
 const LOOSE: usize = 10;
 
 /// Grades as written, from the finest to the coarsest.
@@ -26,7 +26,7 @@ const fn grade(number: usize) -> usize {
 const LARGEST: f64 = 500.0;
 const LARGEST_OF_ALL: f64 = 3150.0;
 
-/// What a class is of.
+/// Feature that a class is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Feature {
     Hole,
@@ -44,7 +44,7 @@ pub struct FitClass {
     grade: usize,
 }
 
-/// Reads `H7`, `js9`, `IT8`; `None` where a text is not letters and a number.
+/// Reads `H7`, `js9`, `IT8`; `None` if a text is not letters and a number.
 pub(super) fn parse(text: &str) -> Option<Result<FitClass, ClassError>> {
     let digits = text.find(|letter: char| letter.is_ascii_digit())?;
     let (letters, number) = text.split_at(digits);
@@ -121,7 +121,7 @@ impl FitClass {
         })
     }
 
-    /// The same above 500 mm: holes are shafts turned round.
+    /// The same above 500 mm: limits of holes are those of shafts with the other sign.
     fn of_large(self, size: f64) -> Result<[f64; 2], ClassError> {
         let none = |range: &str| Err(out_of_range(self.name(), range, size));
         let Some(tolerance) = self.grade.checked_sub(grade(0)).and_then(|number| large::tolerance(number, size)) else {

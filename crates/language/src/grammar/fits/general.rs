@@ -21,13 +21,13 @@ const ENDS: [f64; 8] = [3.0, 6.0, 30.0, 120.0, 400.0, 1000.0, 2000.0, 4000.0];
 /// Smallest size, mm.
 const SMALLEST: f64 = 0.5;
 
-/// Deviations, µm, by range; 0 where there are none.
+/// Deviations, µm, by range; 0 if there is none.
 const FINE: [u16; 8] = [50, 50, 100, 150, 200, 300, 500, 0];
 const MEDIUM: [u16; 8] = [100, 100, 200, 300, 500, 800, 1200, 2000];
 const COARSE: [u16; 8] = [200, 300, 500, 800, 1200, 2000, 3000, 4000];
 const VERY_COARSE: [u16; 8] = [0, 500, 1000, 1500, 2500, 4000, 6000, 8000];
 
-/// Reads `ISO 2768-m`; a second letter for geometrical tolerances (`ISO 2768-mK`) is passed over.
+/// Reads `ISO 2768-m`; ignores a second letter for geometrical tolerances (`ISO 2768-mK`).
 pub(super) fn parse(text: &str) -> Option<Result<GeneralClass, ClassError>> {
     let class = text.strip_prefix("ISO")?.trim_start().strip_prefix("2768")?.trim_start_matches(['-', '–', ' ']);
     let size = class.strip_suffix(['H', 'K', 'L']).unwrap_or(class);

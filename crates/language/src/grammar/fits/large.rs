@@ -54,8 +54,8 @@ const FINER_SHAFTS: [(&str, [i16; 16]); 4] = [
     ("u", [600, 660, 740, 840, 940, 1050, 1150, 1300, 1450, 1600, 1850, 2000, 2300, 2500, 2900, 3200]),
 ];
 
-/// Fundamental deviation of a shaft with these small letters, µm, of a size above 500 mm; that of a hole has the other
-/// sign. `None` where there is none.
+/// Fundamental deviation of a shaft with these small letters, µm, for a size above 500 mm; that of a hole has the other
+/// sign. `None` if the tables have none.
 pub(super) fn fundamental(letters: &str, size: f64) -> Option<f64> {
     let coarse = SHAFTS.iter().find(|(own, _)| *own == letters).map(|(_, values)| (&RANGES[..], &values[..]));
     let fine = || FINER_SHAFTS.iter().find(|(own, _)| *own == letters).map(|(_, values)| (&FINER[..], &values[..]));
@@ -63,7 +63,7 @@ pub(super) fn fundamental(letters: &str, size: f64) -> Option<f64> {
     range(ends, size).map(|index| f64::from(values[index]))
 }
 
-/// Standard tolerance of a grade from 1 to 18, µm, of a size above 500 mm.
+/// Standard tolerance of a grade from 1 to 18, µm, for a size above 500 mm.
 pub(super) fn tolerance(grade: usize, size: f64) -> Option<f64> {
     let widths = GRADES.get(grade.checked_sub(1)?)?;
     range(&RANGES, size).map(|index| f64::from(widths[index]))

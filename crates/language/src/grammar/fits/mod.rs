@@ -23,9 +23,9 @@ pub use general::GeneralClass;
 /// A tolerance class.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ToleranceClass {
-    /// Of ISO 286-1.
+    /// A class of ISO 286-1.
     Fit(FitClass),
-    /// Of ISO 2768-1.
+    /// A class of ISO 2768-1.
     General(GeneralClass),
 }
 
@@ -63,7 +63,7 @@ pub enum ClassError {
 }
 
 impl ToleranceClass {
-    /// Reads a class; `None` where a text is none, well or badly written.
+    /// Reads a class; `None` if a text has not the form of one.
     pub fn parse(text: &str) -> Option<Result<Self, ClassError>> {
         if let Some(general) = general::parse(text) {
             return Some(general.map(Self::General));

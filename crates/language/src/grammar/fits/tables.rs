@@ -33,7 +33,7 @@ pub(super) const FINER: [f64; 25] = [
     250.0, 280.0, 315.0, 355.0, 400.0, 450.0, 500.0,
 ];
 
-/// No deviation is given for a range.
+/// Mark of a range without a deviation.
 const NONE: i16 = i16::MIN;
 
 /// Fundamental deviation of shafts by letters and finer range: es of a to g, ei of m to zc (tables 4 and 5).
@@ -169,7 +169,7 @@ const fn by_range(values: [i16; 13]) -> [i16; 25] {
     finer
 }
 
-/// Deviations of the first three ranges; none of the others.
+/// Deviations of the first three ranges; none for the others.
 const fn first([a, b, c]: [i16; 3]) -> [i16; 25] {
     let mut finer = [NONE; 25];
     (finer[0], finer[1], finer[2]) = (a, b, c);
@@ -181,7 +181,7 @@ pub(super) fn range(ends: &[f64], size: f64) -> Option<usize> {
     ends.iter().position(|&end| size <= end).filter(|_| size > 0.0)
 }
 
-/// Fundamental deviation of a shaft with these small letters, µm; `None` where there is none for a size.
+/// Fundamental deviation of a shaft with these small letters, µm; `None` if there is none for the size.
 pub(super) fn fundamental(letters: &str, size: f64) -> Option<i16> {
     let (_, deviations) = SHAFTS.iter().find(|(own, _)| *own == letters)?;
     range(&FINER, size).map(|range| deviations[range]).filter(|deviation| *deviation != NONE)
