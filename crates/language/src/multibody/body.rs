@@ -11,7 +11,7 @@
 //! ```
 //!
 //! so that a force F at r and a torque τ have the generalised forces F on r₀ and T = R s × F + τ about its origin: T_z
-//! on θ, 2 Eᵀ T on p. Along p itself nothing acts; what stands there is for the multiplier of pᵀp = 1 alone.
+//! on θ, 2 Eᵀ T on p. No force acts along p itself; the equation there serves the multiplier of pᵀp = 1 alone.
 
 use symdiff::{Builder, Scalar};
 
@@ -22,14 +22,14 @@ use super::vector::Vector;
 use super::wrench::Wrench;
 use crate::grammar::TimeOrder;
 
-/// Places for coordinates: x, y, z, then θ or p₀ to p₃.
+/// Number of entries for coordinates: x, y, z, then θ or p₀ to p₃.
 pub const DEGREES_OF_FREEDOM: usize = 7;
-/// Place of θ.
+/// Index of θ.
 pub const ANGLE: usize = 3;
-/// Place of p₀.
+/// Index of p₀.
 pub const EULER: usize = 3;
 
-/// By what a body turns.
+/// Coordinates of a body's rotation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RotationCoordinates {
     /// θ about z.
@@ -44,7 +44,7 @@ type Coordinates<'g> = [Scalar<'g>; DEGREES_OF_FREEDOM];
 /// A body's frame and inertia, over the symbols.
 #[derive(Clone, Debug)]
 pub struct Body<'g> {
-    /// What stands behind x, y, z.
+    /// Coordinates after x, y, z.
     pub rotation_coordinates: RotationCoordinates,
     /// x, y, z, then θ or p.
     pub position: Coordinates<'g>,
@@ -52,16 +52,16 @@ pub struct Body<'g> {
     pub velocity: Coordinates<'g>,
     /// Their second derivatives by time.
     pub acceleration: Coordinates<'g>,
-    /// Their positions in q; `None` where prescribed, and of a child.
+    /// Their indices in q; `None` for prescribed ones, and for a child.
     pub index: [Option<usize>; DEGREES_OF_FREEDOM],
-    /// Of a child: a body that has no coordinates of its own, but moves against its parent by those of a joint.
+    /// Motion of a child: a body that has no coordinates of its own, but moves against its parent by those of a joint.
     pub relative_motion: Option<Box<RelativeMotion<'g>>>,
-    /// Of a child that does not only turn about z.
+    /// Rotation of a child that does not only turn about z.
     pub attitude: Option<Attitude<'g>>,
-    /// Mass m, kg; zero where the body declares none.
+    /// Mass m, kg; zero if the body declares none.
     pub mass: Scalar<'g>,
-    /// Inertia tensor J about the centre of mass in the frame's axes, kg m²; zero where the body declares none, and but
-    /// for J_zz where it turns by θ.
+    /// Inertia tensor J about the centre of mass in the frame's axes, kg m²; zero if the body declares none, and zero
+    /// except for J_zz if it turns by θ.
     pub inertia: Matrix<'g>,
     /// Centre of mass s_c in the frame, m.
     pub center: Vector<'g>,
@@ -201,8 +201,8 @@ impl<'g> Body<'g> {
         self.in_body(alpha, &self.acceleration)
     }
 
-    /// A rate of rotation in the body's axes, from that in the ground's where it is known, else from the coordinates'
-    /// derivative.
+    /// A rate of rotation in the body's axes, from that in the ground's axes if it is known, else from the derivative
+    /// of the coordinates.
     fn in_body(&self, in_ground: Option<Vector<'g>>, derivative: &Coordinates<'g>) -> Vector<'g> {
         match (in_ground, self.rotation_coordinates) {
             (Some(rate), _) => self.matrix().transposed() * rate,
@@ -249,7 +249,7 @@ impl<'g> Body<'g> {
         stacked(force, rotational)
     }
 
-    /// The same of a torque in the body's axes, the force still in the ground's.
+    /// The same for a torque in the body's axes, the force still in the ground's.
     pub fn generalised_of_torque_in_body(&self, force: Vector<'g>, torque: Vector<'g>) -> Coordinates<'g> {
         let rotational = match self.rotation_coordinates {
             RotationCoordinates::Angle => self.on_angle(torque),
@@ -264,7 +264,7 @@ impl<'g> Body<'g> {
     }
 }
 
-/// Of the origin, then of the rotation.
+/// Entries of the origin, then of the rotation.
 pub(super) fn stacked<'g>(origin: Vector<'g>, rotation: Quaternion<'g>) -> Coordinates<'g> {
     let ([x, y, z], [p0, p1, p2, p3]) = (origin.components(), rotation.components());
     [x, y, z, p0, p1, p2, p3]

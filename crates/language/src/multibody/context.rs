@@ -1,11 +1,11 @@
-//! What a formula may depend on, by where it stands.
+//! Permitted dependencies of formulas, by their location.
 
 use std::fmt;
 
-/// What a formula may depend on; each includes those before it.
+/// Permitted dependencies of a formula; each includes those before it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Context {
-    /// Masses, points, values at the start.
+    /// Masses, points, initial values.
     Parameters,
     /// Prescribed coordinates, and numbers of joints (drivers).
     Time,

@@ -1,4 +1,4 @@
-//! What can be wrong with a mechanism that only shows when its equations are written down.
+//! Errors of a mechanism that appear only when its equations are built.
 
 use super::context::Context;
 use crate::syntax::{Code, Coded};
@@ -18,16 +18,16 @@ pub enum BuildError {
         constraint: String,
         /// Its value, m or rad.
         residual: f64,
-        /// Where between the bounds of the parameters; `None` where it is so at the nominal values.
+        /// Bounds of the parameters, or time, at which it occurs; `None` for the nominal values at t = 0.
         at: Option<&'static str>,
     },
-    /// Joint coordinates are asked for where they are not possible.
+    /// Joint coordinates are requested, but not possible.
     #[error("`formulation: joint` is not possible here: {why}")]
     NoJointCoordinates {
         /// Obstacle.
         why: String,
     },
-    /// The speed of a motor has no integral that is known. The reader of model files lets none through.
+    /// The speed of a motor has no known integral. The reader of model files refuses such a speed.
     #[error("a motor's speed cannot be integrated")]
     Speed,
     /// Teeth cannot touch where the bearings are.
@@ -38,7 +38,7 @@ pub enum BuildError {
         /// Obstacle.
         why: String,
     },
-    /// A coordinate without inertia that forces do not place.
+    /// A coordinate without inertia that forces do not determine.
     #[error("`{coordinate}` has no inertia, and {why}")]
     Massless {
         /// Name of the coordinate.
@@ -46,7 +46,7 @@ pub enum BuildError {
         /// Obstacle and remedy.
         why: &'static str,
     },
-    /// A name means nothing, or cannot be known where it is used. The reader of model files lets neither through.
+    /// A name is unknown, or its value is unknown where it is used. The reader of model files refuses both.
     #[error("`{name}` cannot stand in a formula of {allowed}")]
     Name {
         /// The name.

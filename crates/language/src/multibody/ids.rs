@@ -1,5 +1,5 @@
-//! Numbers of what a mechanism has, as all later rooms name them: a constraint's cannot be taken for that of a
-//! coordinate or of an equation. Lists of other rooms that are read by them say so where they are.
+//! Numbers of the parts of a mechanism in all later rooms: that of a constraint cannot be taken for that of a
+//! coordinate or of an equation. Lists of other rooms that are indexed by them say so where they are declared.
 
 use serde::{Deserialize, Serialize};
 
@@ -11,7 +11,7 @@ macro_rules! ids {
         pub struct $id(usize);
 
         impl $id {
-            /// With this number, from 0.
+            /// The identifier with this number, from 0.
             pub const fn new(number: usize) -> Self {
                 Self(number)
             }
@@ -29,7 +29,7 @@ ids! {
     CoordinateId;
     /// A constraint.
     ConstraintId;
-    /// A condition of the start.
+    /// A condition at the start.
     ConditionId;
     /// An output.
     OutputId;

@@ -17,9 +17,8 @@
 //!     ⎣ 2 m Gᵀ s̃ Rᵀ    4 Gᵀ J₀ G + 4 μ p pᵀ  ⎦           ⎣ −2 Gᵀ (ω' × J₀ ω')  ⎦       μ = tr J₀ / 3
 //! ```
 //!
-//! J is taken about the centre of mass. 4 Gᵀ J₀ G is singular: it knows nothing of a change of |p|. The term with μ
-//! makes M positive definite and changes no motion, since it acts along p, where the multiplier of pᵀp = 1 takes it
-//! up.
+//! J is taken about the centre of mass. 4 Gᵀ J₀ G is singular: it is zero for a change of |p|. The term with μ makes M
+//! positive definite and changes no motion, since it acts along p, where the multiplier of pᵀp = 1 takes it up.
 
 use symdiff::{Builder, Scalar};
 
@@ -57,7 +56,7 @@ impl<'g> Body<'g> {
         }
     }
 
-    /// M with nothing but m in it.
+    /// M with m as its only entries.
     fn mass_alone(&self, g: &'g Builder) -> [[Scalar<'g>; DEGREES_OF_FREEDOM]; DEGREES_OF_FREEDOM] {
         let mut matrix = [[g.number(0.0); DEGREES_OF_FREEDOM]; DEGREES_OF_FREEDOM];
         (0..3).for_each(|i| matrix[i][i] = self.mass);

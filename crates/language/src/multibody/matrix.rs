@@ -11,7 +11,7 @@ use super::vector::Vector;
 pub struct Matrix<'g>([Vector<'g>; 3]);
 
 impl<'g> Matrix<'g> {
-    /// Without an entry.
+    /// The zero matrix.
     pub fn zero(g: &'g Builder) -> Self {
         Self([Vector::zero(g); 3])
     }

@@ -1,5 +1,5 @@
-//! The kernel of multibody dynamics: vectors, matrices, rotations, points, frames and bodies as expressions. It knows
-//! no model description.
+//! The kernel of multibody dynamics: vectors, matrices, rotations, points, frames and bodies as expressions. It depends
+//! on no model description.
 
 mod body;
 mod context;

@@ -2,7 +2,7 @@
 
 use symdiff::{Expr, Scalar};
 
-/// A function, at whatever expression stands for its variable.
+/// A function that can be evaluated at any expression.
 #[derive(Clone, Copy, Debug)]
 pub struct OwnFunction<'g> {
     variable: Scalar<'g>,
@@ -10,7 +10,7 @@ pub struct OwnFunction<'g> {
 }
 
 impl<'g> OwnFunction<'g> {
-    /// The function whose value an expression of the symbol `variable` is.
+    /// The function with a value that is an expression of the symbol `variable`.
     pub fn new(variable: Scalar<'g>, value: Scalar<'g>) -> Self {
         Self { variable, value }
     }
@@ -25,7 +25,7 @@ impl<'g> OwnFunction<'g> {
         Self { value: self.value.derivative(symbol), ..*self }
     }
 
-    /// Its value where an expression stands for its variable.
+    /// Its value at an expression, which replaces its variable.
     pub fn at(&self, argument: Scalar<'g>) -> Scalar<'g> {
         let g = argument.builder();
         let stands: std::iter::Once<(Expr, Expr)> = std::iter::once((self.variable.expr(), argument.expr()));

@@ -52,8 +52,7 @@ impl<'g> Pair<'g> {
         self.outward(direction).dot(self.offset())
     }
 
-    /// Zero where the second frame is rotated about the axis (a unit vector) by the angle: 2 [cos(φ/2) e·a − sin(φ/2)
-    /// q₀].
+    /// Zero if the second frame is rotated about the axis (a unit vector) by the angle: 2 [cos(φ/2) e·a − sin(φ/2) q₀].
     pub fn turned_by(&self, axis: Vector<'g>, angle: Scalar<'g>) -> Scalar<'g> {
         let relative = self.relative();
         let half = 0.5 * angle;

@@ -1,4 +1,4 @@
-//! A frame against another one, where both are near a known relative position with parallel axes.
+//! Displacement of a frame against another one, both near a known relative position with parallel axes.
 //!
 //! In the axes of the first frame, R its orientation and X the second one's origin at rest:
 //!
@@ -14,7 +14,7 @@ use super::matrix::Matrix;
 use super::pair::Pair;
 use super::vector::Vector;
 
-/// How far a frame is from where it is at rest against another.
+/// Displacement of a frame from its rest position against another.
 #[derive(Clone, Copy, Debug)]
 pub struct RelativeDisplacement<'g> {
     /// R
@@ -26,7 +26,7 @@ pub struct RelativeDisplacement<'g> {
 }
 
 impl<'g> RelativeDisplacement<'g> {
-    /// Of the second frame of a pair, at rest at X.
+    /// Displacement of the second frame of a pair, at rest at X.
     pub fn of(pair: &Pair<'g>, at_rest: Vector<'g>) -> Self {
         let outward = pair.first.orientation.matrix();
         let relative = pair.relative();

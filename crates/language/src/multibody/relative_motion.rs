@@ -31,13 +31,13 @@ pub struct AxisMotion<'g> {
 pub struct DegreeOfFreedom<'g> {
     /// Index in q.
     pub index: usize,
-    /// φᵢ for one of it, by rotation.
+    /// φᵢ per unit of the coordinate, by rotation.
     pub rotation: Vec<Scalar<'g>>,
-    /// sᵢ for one of it, by translation.
+    /// sᵢ per unit of the coordinate, by translation.
     pub translation: Vec<Scalar<'g>>,
 }
 
-/// How a child moves against its parent.
+/// Motion of a child against its parent.
 #[derive(Clone, Debug)]
 pub struct RelativeMotion<'g> {
     /// Index of the parent.
@@ -54,9 +54,9 @@ pub struct RelativeMotion<'g> {
     pub rotations: Vec<AxisMotion<'g>>,
     /// Translation.
     pub translations: Vec<AxisMotion<'g>>,
-    /// β in the parent's and in the child's axes; `None` where axes do not turn against one another.
+    /// β in the parent's and in the child's axes; `None` if axes do not turn against one another.
     pub gyration: Option<[Vector<'g>; 2]>,
-    /// γ in the parent's axes; `None` where translations are along axes of the parent.
+    /// γ in the parent's axes; `None` if translations are along axes of the parent.
     pub drift: Option<Vector<'g>>,
     /// The coordinates.
     pub dofs: Vec<DegreeOfFreedom<'g>>,

@@ -1,4 +1,4 @@
-//! Vectors of space, as expressions. What stays in the plane has z = 0, a constant that folds away.
+//! Vectors of space, as expressions. Vectors in the plane have z = 0, a constant that folds away.
 
 use std::ops::{Add, AddAssign, Div, Index, IndexMut, Mul, Neg, Sub};
 

@@ -16,7 +16,7 @@ pub struct Wrench<'g> {
 }
 
 impl<'g> Wrench<'g> {
-    /// Nothing.
+    /// No force and no torque.
     pub fn zero(g: &'g Builder) -> Self {
         Self { force: Vector::zero(g), torque: Vector::zero(g) }
     }

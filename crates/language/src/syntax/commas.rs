@@ -1,5 +1,5 @@
 //! Formulas that YAML cuts at their commas: between braces, `torque: max(a, b)` is `torque: max(a`, and a key `b)`.
-//! The pieces are put together again, so that the message is about the comma, and not what follows from it.
+//! The pieces are joined again, so that the message is about the comma, and not about its consequences.
 
 use super::codes::Code;
 use super::diagnostic::{Diagnostic, Diagnostics};
@@ -7,7 +7,7 @@ use super::source::Span;
 use super::suggest::clip;
 use super::tree::{Entry, Node, Scalar, Value};
 
-/// The values of a mapping in braces, those in one that a comma has cut.
+/// Joins the values of a mapping in braces that a comma has cut.
 pub(super) fn join_values(text: &str, entries: Vec<Entry>, diagnostics: &mut Diagnostics) -> Vec<Entry> {
     let mut joined: Vec<Entry> = Vec::with_capacity(entries.len());
     let mut entries = entries.into_iter().peekable();
@@ -34,7 +34,7 @@ pub(super) fn join_values(text: &str, entries: Vec<Entry>, diagnostics: &mut Dia
     joined
 }
 
-/// The items of a list in brackets, those in one that a comma has cut.
+/// Joins the items of a list in brackets that a comma has cut.
 pub(super) fn join_items(text: &str, items: Vec<Node>, diagnostics: &mut Diagnostics) -> Vec<Node> {
     let mut joined: Vec<Node> = Vec::with_capacity(items.len());
     for item in items {
@@ -59,7 +59,7 @@ fn is_decimal(first: &Node, second: &str) -> bool {
     whole.is_some_and(is_whole) && second.starts_with(|c: char| c.is_ascii_digit())
 }
 
-/// Whether a key goes on with a text that a comma has cut: no key has a space.
+/// Whether a key continues a text that a comma has cut: no key has a space.
 fn is_text(before: &Entry, key: &str) -> bool {
     let is_plain = before.value.scalar().is_some_and(|scalar| scalar.plain && !scalar.text.is_empty());
     is_plain && (before.key == "description" || key.contains(' '))
@@ -76,7 +76,7 @@ fn with_point(first: &Node, second: &Entry, diagnostics: &mut Diagnostics) -> No
     Node { span, value: Value::Scalar(Scalar::plain(number, None)) }
 }
 
-/// A text and the piece behind its comma; where the last parenthesis closes, the comma is reported.
+/// Joins a text and the piece after its comma; reports the comma if the last parenthesis is closed.
 fn together(text: &str, first: &Node, second: &Span, diagnostics: &mut Diagnostics) -> Node {
     let span = first.span.start..second.end.max(first.span.end);
     let written = text.get(span.clone()).unwrap_or("").trim_end();

@@ -8,7 +8,7 @@ use serde::Serialize;
 use super::codes::{Code, Coded};
 use super::source::{Sources, Span, TextInstance};
 
-/// How bad it is.
+/// Severity of a diagnostic.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Severity {
@@ -18,27 +18,27 @@ pub enum Severity {
     Warning,
 }
 
-/// One thing that is wrong.
+/// An error or a warning.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Diagnostic {
-    /// How bad it is.
+    /// Severity of a diagnostic.
     pub severity: Severity,
     /// The kind of mistake.
     pub code: Code,
     /// Description in one line.
     pub message: String,
-    /// Where; absent where the file as a whole is meant.
+    /// Its location; `None` for the file as a whole.
     pub span: Option<Span>,
-    /// What stands beside the marker.
+    /// Text next to the marker.
     pub label: Option<String>,
-    /// Other places that explain it, each with its label.
+    /// Other locations that explain it, each with its label.
     pub secondary: Vec<(Span, String)>,
-    /// What would be right.
+    /// Suggested correction.
     pub help: Option<String>,
 }
 
 impl Diagnostic {
-    /// An error at a place.
+    /// An error at a location.
     pub fn error(code: Code, span: Span, message: impl Into<String>) -> Self {
         Self {
             severity: Severity::Error,
@@ -51,7 +51,7 @@ impl Diagnostic {
         }
     }
 
-    /// A warning at a place.
+    /// A warning at a location.
     pub fn warning(code: Code, span: Span, message: impl Into<String>) -> Self {
         Self { severity: Severity::Warning, ..Self::error(code, span, message) }
     }
@@ -61,26 +61,26 @@ impl Diagnostic {
         Self { span: None, ..Self::error(code, 0..0, message) }
     }
 
-    /// Whether it says that a name stands for nothing.
+    /// Whether it reports an unknown name.
     fn is_of_unknown_name(&self) -> bool {
         self.message.starts_with("unknown ") || self.message.contains("` has no point `")
     }
 
-    /// With text beside the marker.
+    /// Adds text next to the marker.
     #[must_use]
     pub fn label(mut self, label: impl Into<String>) -> Self {
         self.label = Some(label.into());
         self
     }
 
-    /// With what would be right.
+    /// Sets the suggested correction.
     #[must_use]
     pub fn help(mut self, help: impl Into<Option<String>>) -> Self {
         self.help = help.into();
         self
     }
 
-    /// With another place that explains it.
+    /// Adds another location that explains it.
     #[must_use]
     pub fn also(mut self, span: Span, label: impl Into<String>) -> Self {
         self.secondary.push((span, label.into()));
@@ -88,13 +88,13 @@ impl Diagnostic {
     }
 }
 
-/// Everything that is wrong, with the texts it is wrong in.
+/// All errors and warnings, with the texts that they point into.
 #[derive(Clone, Debug, Default)]
 pub struct Diagnostics {
     /// The texts that spans point into; the first is the model file.
     pub sources: Sources,
     items: Vec<Diagnostic>,
-    /// Whether names could not be read, so that nothing is known to be unknown.
+    /// Whether names could not be read, so that unknown names are not reported.
     names_lost: bool,
 }
 
@@ -109,26 +109,27 @@ pub struct Record {
     pub message: String,
     /// Name of the text.
     pub file: String,
-    /// From 1; absent where the file as a whole is meant.
+    /// From 1; absent for the file as a whole.
     pub line: Option<usize>,
     /// Characters, from 1.
     pub column: Option<usize>,
-    /// What would be right.
+    /// Suggested correction.
     pub help: Option<String>,
-    /// In which instance of an assembly, where it is of one.
+    /// The instance of an assembly, if it is in one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub instance: Option<String>,
 }
 
 impl Diagnostics {
-    /// Nothing wrong yet with this text.
+    /// No diagnostics yet of this text.
     pub fn new(name: impl Into<String>, text: impl Into<String>) -> Self {
         let mut sources = Sources::default();
         sources.add(name, text);
         Self { sources, ..Self::default() }
     }
 
-    /// Adds one that is not there yet; of a copy, with the place of the instance that it is of, and of those around it.
+    /// Adds a diagnostic unless it is there already. One in a copy also gets the locations of its instance and of those
+    /// around it.
     pub fn push(&mut self, mut diagnostic: Diagnostic) {
         // One text may be read several times, one after the other: for each component of its expansion.
         let is_same = |known: &Diagnostic| known.span == diagnostic.span && known.message == diagnostic.message;
@@ -143,7 +144,7 @@ impl Diagnostics {
         self.items.push(diagnostic);
     }
 
-    /// Reads a text that is added to the sources, with its places there.
+    /// Reads a text that was added to the sources at `start`, and moves its diagnostics there.
     pub fn read_more<T>(&mut self, start: usize, text: &str, read: impl FnOnce(&mut Self) -> T) -> T {
         let mut own = Self::new("", text);
         let result = read(&mut own);
@@ -157,12 +158,12 @@ impl Diagnostics {
         result
     }
 
-    /// Where names belong, there is something else: that was reported, and names that are unknown from now on are not.
+    /// Unknown names are not reported from now on: names could not be read, which was reported.
     pub fn names_are_lost(&mut self) {
         self.names_lost = true;
     }
 
-    /// Says of the error of a key that is not known which one is missing beside it.
+    /// Adds to the error of an unknown key which key is missing.
     pub fn also_missing(&mut self, error: usize, key: &str) {
         if let Some(found) = self.items.get_mut(error) {
             let known = found.help.take().map_or_else(String::new, |help| format!("; {help}"));
@@ -170,12 +171,13 @@ impl Diagnostics {
         }
     }
 
-    /// How many there are so far.
+    /// Number of diagnostics so far.
     pub fn len(&self) -> usize {
         self.items.len()
     }
 
-    /// Of those behind the `first`: says of names that are unknown because they are left out that they are.
+    /// Adds to the unknown names among the diagnostics after the `first` whether the name is omitted, one of
+    /// `left_out`.
     pub fn found_without(&mut self, first: usize, left_out: &[String]) {
         for diagnostic in self.items[first..].iter_mut().filter(|found| found.message.starts_with("unknown ")) {
             if let Some(name) = left_out.iter().find(|name| diagnostic.message.ends_with(&format!(" `{name}`"))) {
@@ -184,8 +186,8 @@ impl Diagnostics {
         }
     }
 
-    /// Of those behind the `first`, which were found in a scene: removes repetitions, and points to the scene
-    /// from the others that lie outside of it. `name` is the place of the scene's name, `whole` that of all of it.
+    /// Removes repetitions from the diagnostics from index `first` on, which were found in a scene, and lets those
+    /// outside of the scene point to it. `name` is the location of the scene's name, `whole` that of the whole scene.
     pub fn found_in_scene(&mut self, first: usize, name: &Span, whole: &Span) {
         let found = self.items.split_off(first);
         let key = |diagnostic: &Diagnostic| (diagnostic.span.clone(), diagnostic.message.clone());
@@ -197,7 +199,7 @@ impl Diagnostics {
         }
     }
 
-    /// All, in the order in which they stand in the file.
+    /// All, in the order of the file.
     pub fn iter(&self) -> impl Iterator<Item = &Diagnostic> {
         let mut sorted: Vec<&Diagnostic> = self.items.iter().collect();
         sorted.sort_by_key(|diagnostic| diagnostic.span.as_ref().map_or(0, |span| span.start));
@@ -219,7 +221,7 @@ impl Diagnostics {
         self.errors() > 0
     }
 
-    /// All as plain data, in the order in which they stand in the file.
+    /// All as plain data, in the order of the file.
     pub fn records(&self) -> Vec<Record> {
         self.iter().map(|diagnostic| self.record(diagnostic)).collect()
     }
@@ -249,7 +251,7 @@ impl fmt::Display for Diagnostics {
 
 impl std::error::Error for Diagnostics {}
 
-/// That of the first error.
+/// The code of the first error.
 impl Coded for Diagnostics {
     fn code(&self) -> Option<Code> {
         self.iter().find(|diagnostic| diagnostic.severity == Severity::Error).map(|diagnostic| diagnostic.code)

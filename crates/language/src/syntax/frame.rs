@@ -1,15 +1,15 @@
-//! How an instance stands in the model: mirrored, then turned, then moved.
+//! Placement of an instance in the model: mirrored, then turned, then moved.
 //!
-//! A place s of the instance is at r = g + R D s: D has the signs of its mirrors, R and g are what its parameters
-//! `at.model.x`, `at.model.y`, `at.model.z`, and `at.model.angle` or the Euler parameters `at.model.p0` …
-//! `at.model.p3` say. Here are the formulas of that, as text.
+//! A point s of the instance is at r = g + R D s: D has the signs of its mirrors, its parameters `at.model.x`,
+//! `at.model.y`, `at.model.z` are g, and `at.model.angle` or the Euler parameters `at.model.p0` … `at.model.p3` give R.
+//! This module writes formulas of that, as text.
 
 use super::mirrors::Mirrors;
 
 /// Three components, or rows of them, as text.
 pub type TextVector = [String; 3];
 
-/// How an instance stands; only nonzero parts of the placement have parameters.
+/// Placement of an instance; only its nonzero parts have parameters.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct InstanceFrame {
     /// D
@@ -20,7 +20,7 @@ pub struct InstanceFrame {
     pub turned: Turned,
 }
 
-/// How an instance is turned.
+/// Rotation of an instance.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Turned {
     /// Not at all.
@@ -32,14 +32,14 @@ pub enum Turned {
     InSpace,
 }
 
-/// What stands before the names of the parameters of a frame, in the instance itself.
+/// Prefix of the names of a frame's parameters, in the instance itself.
 pub const PLACE: &str = "at.model.";
 
 /// Names of the components of g.
 const POSITION: [&str; 3] = ["x", "y", "z"];
 
 impl InstanceFrame {
-    /// A frame within this one, of which `moved` and `turned` are in this one's axes.
+    /// A frame within this one, whose `moved` and `turned` are in this one's axes.
     #[must_use]
     pub fn within(self, inner: Self) -> Self {
         let turned = match (self.turned, inner.turned) {
@@ -57,12 +57,12 @@ impl InstanceFrame {
         Self { mirrors: self.mirrors.and(inner.mirrors), moved, turned }
     }
 
-    /// Whether directions of the instance are others in the model, but for their signs.
+    /// Whether directions of the instance differ in the model by more than their signs.
     pub fn is_turned(self) -> bool {
         self.turned != Turned::Not
     }
 
-    /// g; `place` stands before the names.
+    /// g; `place` is the prefix of the names.
     pub fn origin(self, place: &str) -> TextVector {
         [0, 1, 2].map(|axis| if self.moved[axis] { format!("{place}{}", POSITION[axis]) } else { "0".to_owned() })
     }
@@ -102,7 +102,7 @@ impl InstanceFrame {
         ]
     }
 
-    /// R v, of a vector with its signs.
+    /// R v, of a vector that has the signs of D.
     pub fn turn(self, place: &str, vector: &TextVector) -> TextVector {
         self.rotation(place).map(|row| dot(&row, vector))
     }
@@ -158,7 +158,7 @@ pub fn sum<'t>(terms: impl Iterator<Item = &'t String>) -> String {
     }
 }
 
-/// The formula with the other sign, where it has that.
+/// The formula, negated if `is_negative`.
 pub fn signed(text: &str, is_negative: bool) -> String {
     if is_negative && text != "0" { format!("-({text})") } else { text.to_owned() }
 }

@@ -1,14 +1,14 @@
-//! What a message says, apart from whom it says it of: one habit that is wrong is shown once.
+//! Messages without their owners: a mistake that is made again and again is shown once.
 
 use super::diagnostic::{Diagnostic, Severity};
 
-/// Diagnostics with equal habits differ in their locations and in the owner of the missing part.
+/// Diagnostics with equal habits differ only in their locations and in the owner of the missing part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Habit<'d> {
     severity: Severity,
-    /// Before and after the owner.
+    /// Text before and after the owner.
     message: (&'d str, &'d str),
-    /// Where owners may differ, they have to be told the same.
+    /// The help, which must be equal if owners may differ; `None` for other messages.
     help: Option<&'d str>,
 }
 
@@ -22,7 +22,7 @@ impl<'d> Habit<'d> {
     }
 }
 
-/// The owner of the missing part, in "body `crank` has no `angel`", or is not used.
+/// The owner of the missing part in "body `crank` has no `angel`", or the name that is used nowhere.
 pub fn owner(message: &str) -> Option<&str> {
     around_owner(message).map(|(_, owner, _)| owner)
 }

@@ -11,7 +11,7 @@ impl Mirrors {
         Self([0, 1, 2].map(|other| other == axis))
     }
 
-    /// Both, in any order.
+    /// The reflections of both, in any order.
     #[must_use]
     pub fn and(self, other: Self) -> Self {
         Self([0, 1, 2].map(|axis| self.0[axis] != other.0[axis]))

@@ -1,4 +1,4 @@
-//! Text → a tree in which every node knows its place, and the diagnostics that point there.
+//! Text → a tree of nodes with their locations, and the diagnostics that point there.
 
 pub mod codes;
 mod commas;

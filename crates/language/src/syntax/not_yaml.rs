@@ -1,10 +1,10 @@
-//! What would be right where a text stops to be YAML.
+//! Suggested corrections of texts that are not YAML.
 
 use granit_parser::ErrorKind;
 
 use super::suggest::clip;
 
-/// What to write instead, where the slip is a common one; `at` is the byte at which reading ended.
+/// Suggested correction of a common mistake; `at` is the byte at which reading ended.
 pub(super) fn help(text: &str, at: usize, kind: &ErrorKind) -> Option<String> {
     use ErrorKind::*;
     let is_indented_by_tab =
@@ -41,7 +41,7 @@ pub(super) fn help(text: &str, at: usize, kind: &ErrorKind) -> Option<String> {
     Some(help.to_owned())
 }
 
-/// Which lines begin in different columns.
+/// Help if this line and the one above begin in different columns.
 fn columns(text: &str, at: usize) -> Option<String> {
     let column = |line: &str| line.chars().take_while(|c| *c == ' ').count() + 1;
     let start = text[..at].rfind('\n').map_or(0, |newline| newline + 1);
@@ -53,7 +53,7 @@ fn columns(text: &str, at: usize) -> Option<String> {
     (here != above).then_some(told)
 }
 
-/// The line above in which a quote is not closed.
+/// Help that names the line above in which a quote is not closed.
 fn open_quote(text: &str, at: usize) -> Option<String> {
     let lines: Vec<&str> = text[..at].lines().collect();
     let is_open = |line: &str| line.matches('"').count() % 2 == 1 || line.matches('\'').count() % 2 == 1;
@@ -61,7 +61,7 @@ fn open_quote(text: &str, at: usize) -> Option<String> {
     Some(format!("a quote of line {} is not closed", index + 1))
 }
 
-/// The name with an index in braces, `leg_{i}`, at which the text stops to be YAML.
+/// The name with an index in braces, `leg_{i}`, from which on the text is not YAML.
 fn name_with_index(text: &str, at: usize) -> Option<&str> {
     let start_of_line = text[..at].rfind('\n').map_or(0, |newline| newline + 1);
     let before = &text[start_of_line..text[at..].find(' ').map_or(text.len(), |space| at + space)];
@@ -71,9 +71,9 @@ fn name_with_index(text: &str, at: usize) -> Option<&str> {
     Some(&before[start..close])
 }
 
-/// The interval with a unit behind it, `[0.49, 0.51] m`, at which the text stops to be YAML.
+/// The interval with a unit after it, `[0.49, 0.51] m`, from which on the text is not YAML.
 fn interval_before(text: &str, at: usize) -> Option<&str> {
-    // The error stands at the unit, or at what comes behind it.
+    // The error is at the unit or after it.
     let start_of_line = text[..at].trim_end().rfind('\n').map_or(0, |newline| newline + 1);
     let end_of_line = text[at..].find('\n').map_or(text.len(), |newline| at + newline);
     let line = &text[start_of_line..end_of_line];

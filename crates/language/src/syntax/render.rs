@@ -11,7 +11,7 @@ use super::harmless::{harmless, is_harmful};
 use super::source::{LineColumn, Source};
 use crate::syntax::tuning::TUNING;
 
-/// Begins a colour; what comes from a file cannot hold it where it reaches the renderer.
+/// Begins a colour; text from a file never has it in the rendered text.
 const ESCAPE: char = '\u{1b}';
 
 impl Diagnostics {
@@ -29,7 +29,7 @@ impl Diagnostics {
             for (shown, meant) in moved {
                 rendered = rendered.replacen(&shown, &meant, 1);
             }
-            // The renderer shows the control characters of an excerpt by pictures, but for some.
+            // The renderer shows the control characters of an excerpt by pictures, except for some.
             text += &rendered.replace(|c| is_harmful(c) && c != ESCAPE, "\u{fffd}");
             text += "\n\n";
         }
@@ -44,7 +44,7 @@ impl Diagnostics {
         text
     }
 
-    /// All, but of a message that comes many times the first only, with the others.
+    /// All diagnostics; for a message that occurs often, only the first, with the others.
     fn distinct(&self) -> Vec<(&Diagnostic, Vec<&Diagnostic>)> {
         let mut distinct: Vec<(&Diagnostic, Vec<&Diagnostic>)> = Vec::new();
         let mut first: HashMap<Habit, usize> = HashMap::new();
@@ -65,7 +65,7 @@ impl Diagnostics {
         distinct
     }
 
-    /// Where the same message comes again.
+    /// Note with the lines of the other occurrences of a message.
     fn note(&self, of: &Diagnostic, repeated: &[&Diagnostic]) -> Option<String> {
         if repeated.is_empty() {
             return None;
@@ -87,7 +87,7 @@ impl Diagnostics {
         Some(format!("the same in {count} more places{others}{lines}{}", if more { ", …" } else { "" }))
     }
 
-    /// What to render, and the places in it to write anew: columns count from where a long line was cut.
+    /// The report to render, and locations to replace in it: their columns count from the cut of a long line.
     fn report<'d>(
         &'d self,
         diagnostic: &'d Diagnostic,
@@ -113,7 +113,7 @@ impl Diagnostics {
         (vec![group.elements(help).elements(note)], moved)
     }
 
-    /// The lines with their markers; none where the file as a whole is meant.
+    /// The lines with their markers; empty for the file as a whole.
     fn excerpts<'d>(&'d self, diagnostic: &'d Diagnostic) -> Vec<Excerpt<'d>> {
         let primary = diagnostic.span.as_ref().map(|span| (span, diagnostic.label.as_deref(), AnnotationKind::Primary));
         let secondary =
@@ -132,7 +132,7 @@ impl Diagnostics {
 }
 
 impl Diagnostic {
-    /// The same in words that a terminal only shows.
+    /// The same with texts that are harmless to a terminal.
     fn harmless(&self) -> Self {
         Self {
             message: harmless(&self.message),
@@ -183,7 +183,7 @@ impl<'d> Excerpt<'d> {
         std::ptr::eq(self.source, source) && self.marks.iter().all(near)
     }
 
-    /// The lines, and the place as it is shown and as it is meant where the two differ.
+    /// The lines, and the location as shown and as meant, if the two differ.
     fn snippet(self) -> (Snippet<'d, Annotation<'d>>, Option<(String, String)>) {
         let text = self.source.text.as_str();
         let first = self.marks.iter().map(|mark| mark.span.start).min().unwrap_or(0);
@@ -220,7 +220,7 @@ impl<'d> Excerpt<'d> {
     }
 }
 
-/// Of whom else the same is said.
+/// Other owners of the same message, in words.
 fn other_owners(of: &Diagnostic, repeated: &[&Diagnostic]) -> String {
     let mut owners: Vec<&str> = repeated.iter().filter_map(|diagnostic| owner(&diagnostic.message)).collect();
     owners.sort_unstable();

@@ -1,5 +1,4 @@
-//! What names stand for in a copy of a piece of a file: in an instance of an assembly, or in one of several
-//! repetitions.
+//! Meanings of names in a copy of a piece of a file: in an instance of an assembly, or in one of several repetitions.
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -10,45 +9,45 @@ use super::frame::InstanceFrame;
 
 /// The instance and the indices of a copy.
 ///
-/// In an instance every name is one of the instance, but for the ground of a part that is not placed; what means
-/// something by itself (`t`, `energy`) the reader knows. A repetition outside of instances has no prefix.
+/// In an instance every name belongs to the instance, except the ground of a part that is not placed; the reader knows
+/// reserved words (`t`, `energy`). A repetition outside of instances has no prefix.
 #[derive(Clone, Debug, Default)]
 pub struct Scope {
     /// The instance's name with a dot behind it, `front_left.`; empty outside of instances.
     prefix: String,
-    /// What `ground` is.
+    /// Full name of `ground`; `None` for the model's ground.
     ground: Option<String>,
-    /// Of the repetitions around it, the innermost last.
+    /// Indices of the repetitions around it, the innermost last.
     indices: Vec<(String, Index)>,
     /// Parameters that are whole numbers.
     counts: Arc<HashMap<String, i64>>,
     /// Whether the number has the other sign, in a mirror.
     is_negated: bool,
-    /// How the instance stands in the model, if that is not as its assembly is written.
+    /// Placement of the instance in the model; `None` if it is placed as its assembly is written.
     frame: Option<InstanceFrame>,
 }
 
-/// Bodies that do not move.
+/// Name of the ground.
 const GROUND: &str = "ground";
 
 impl Scope {
-    /// Of the model itself.
+    /// The scope of the model itself.
     pub fn of_model(counts: Arc<HashMap<String, i64>>) -> Self {
         Self { counts, ..Self::default() }
     }
 
-    /// Of an instance by its full name.
+    /// The scope of an instance, by its full name.
     pub fn of_instance(name: &str, ground: Option<String>, counts: Arc<HashMap<String, i64>>) -> Self {
         Self { prefix: format!("{name}."), ground, counts, ..Self::default() }
     }
 
-    /// The same, standing so.
+    /// The same with a placement.
     #[must_use]
     pub fn standing(self, frame: Option<InstanceFrame>) -> Self {
         Self { frame, ..self }
     }
 
-    /// How the instance stands in the model, if that is not as its assembly is written.
+    /// Placement of the instance in the model; `None` if it is placed as its assembly is written.
     pub fn frame(&self) -> Option<InstanceFrame> {
         self.frame
     }
@@ -95,12 +94,12 @@ impl Scope {
         self.counts.get(&format!("{}{name}", self.prefix)).copied()
     }
 
-    /// What braces and ranges may use.
+    /// The value of a name in braces and ranges.
     pub fn whole(&self, name: &str) -> Option<Index> {
         self.index(name).or_else(|| self.count(name).map(Index::Number))
     }
 
-    /// A name of the copy as all others know it.
+    /// The full name of a name in the copy.
     pub fn full(&self, name: &str) -> String {
         let owner = name.split('.').next().unwrap_or(name);
         match &self.ground {
@@ -110,8 +109,7 @@ impl Scope {
         }
     }
 
-    /// A name that may have braces, as all others know it; errors in the braces were reported when the copy was
-    /// made.
+    /// The full name of a name that may have braces; errors in the braces were reported when the copy was made.
     pub fn reference(&self, text: &str) -> String {
         let filled = indices::fill(text, &|name| self.whole(name));
         self.full(&filled.unwrap_or_else(|_| text.to_owned()))

@@ -16,13 +16,13 @@ pub type Span = Range<usize>;
 pub struct Source {
     /// Path, or the command-line option that the text came with; harmless to a terminal.
     pub name: String,
-    /// The text; empty where it could not be read.
+    /// The text; empty if it could not be read.
     pub text: String,
-    /// Where its lines begin, counted from its own start.
+    /// Offsets of its lines, counted from its own start.
     lines: Vec<usize>,
 }
 
-/// A place as people count it, both from 1; columns are characters.
+/// A location as people count it, both from 1; columns are characters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LineColumn {
     /// From 1.
@@ -32,7 +32,7 @@ pub struct LineColumn {
 }
 
 impl Source {
-    /// The place of a byte of this source; `offset` counts from the source's own start.
+    /// The location of a byte of this source; `offset` counts from the source's own start.
     pub fn place(&self, offset: usize) -> LineColumn {
         let offset = floor_char_boundary(&self.text, offset);
         let line = self.lines.partition_point(|&start| start <= offset);
@@ -40,7 +40,7 @@ impl Source {
     }
 }
 
-/// A text at an offset: as it was read, or once more for a copy that an instance is.
+/// A text at an offset: as it was read, or once more for a copy in an instance.
 #[derive(Clone, Debug)]
 struct Placed {
     /// Offset of its first byte.
@@ -49,14 +49,14 @@ struct Placed {
     within: Option<TextInstance>,
 }
 
-/// The instance of which a copy of a text is.
+/// The instance that a copy of a text belongs to.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TextInstance {
     /// Its full name.
     pub instance: String,
     /// Assembly of the instance.
     pub of: String,
-    /// Where it is asked for.
+    /// Location of the key that declares it.
     pub span: Span,
 }
 
@@ -67,7 +67,7 @@ pub struct Sources {
 }
 
 impl Sources {
-    /// Adds a text and gives the offset of its first byte. A text that is there already, as a file that several scenes
+    /// Adds a text and returns the offset of its first byte. A text that is present, such as a file that several scenes
     /// name, is not added again.
     pub fn add(&mut self, name: impl Into<String>, text: impl Into<String>) -> usize {
         let (name, text) = (harmless(&name.into()).replace('\n', "\u{fffd}"), text.into());
@@ -80,7 +80,7 @@ impl Sources {
         self.place_at_end(Arc::new(Source { name, text, lines }), None)
     }
 
-    /// Places the text of a span once more, for a copy of it: how far the copy's spans lie behind those of the
+    /// Adds the text of a span once more, for a copy of it. Returns the distance of the copy's spans from those of the
     /// original.
     pub fn copy(&mut self, original: &Span, within: TextInstance) -> usize {
         let Some(placed) = self.placed(original) else { return 0 };
@@ -110,12 +110,12 @@ impl Sources {
         self.all[..behind].last()
     }
 
-    /// The instance in whose copy a span is.
+    /// The instance whose copy contains a span.
     pub fn within(&self, span: &Span) -> Option<&TextInstance> {
         self.placed(span)?.within.as_ref()
     }
 
-    /// The text that a span is in, and the span within it, cut to what there is.
+    /// The text that contains a span, and the span within it, clipped to the text.
     pub fn locate(&self, span: &Span) -> Option<(&Source, Span)> {
         let Placed { start: first, source, .. } = self.placed(span)?;
         let cut = |offset: usize| floor_char_boundary(&source.text, offset.saturating_sub(*first));

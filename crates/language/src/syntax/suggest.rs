@@ -1,4 +1,4 @@
-//! "Did you mean": what to say of a name that is not known.
+//! "Did you mean": help for unknown names.
 
 use crate::syntax::tuning::TUNING;
 
@@ -30,13 +30,13 @@ pub fn nearest<'c>(name: &str, known: impl IntoIterator<Item = &'c str>) -> Opti
         .map(|(_, candidate)| candidate)
 }
 
-/// Help for an unknown name: the nearest known one, or all, or those of many that are most alike. `kind` is their
-/// plural: `bodies`. `None` where no known name is short enough to be shown.
+/// Help for an unknown name: the nearest known one, or all, or the most similar of many. `kind` is their plural:
+/// `bodies`. `None` if no known name is short enough to be shown.
 pub fn help<'c>(name: &str, kind: &str, known: impl IntoIterator<Item = &'c str>) -> Option<String> {
     help_beside(name, kind, known, &[])
 }
 
-/// As [`help`], where names `beside` the known ones are proposed too, and not listed.
+/// As [`help`]; the names `beside` are proposed like known ones, but not listed.
 pub fn help_beside<'c>(
     name: &str,
     kind: &str,
@@ -62,7 +62,7 @@ pub fn help_beside<'c>(
         }
         _ => {
             let name = clip(name).to_lowercase();
-            // Alike is what begins alike; the sort is stable.
+            // Names with the same beginning are similar; the sort is stable.
             let likeness = |other: &str| strsim::jaro_winkler(&name, &other.to_lowercase());
             let mut alike: Vec<(f64, &str)> = short.into_iter().map(|other| (likeness(other), other)).collect();
             alike.sort_by(|a, b| b.0.total_cmp(&a.0));
@@ -72,7 +72,7 @@ pub fn help_beside<'c>(
     }
 }
 
-/// The text that a help proposes for the marked one: a near name, or a quoted formula or interval.
+/// The text that a help proposes instead of the marked one: a near name, or a quoted formula or interval.
 pub fn replacement(help: &str) -> Option<&str> {
     let before =
         ["did you mean `", "quote the formula: `", "quote the interval: `", "quote the text: `", "with an index: `"];

@@ -1,8 +1,8 @@
 //! Tables of numbers: lines of cells between commas, semicolons or tabs; measured rows, points, and tables of models.
 //!
-//! The separator is that of the first line: tabs where it has some, else semicolons, else commas. Beside tabs and
-//! semicolons numbers may have decimal commas, all of a table or none. Empty lines, and those that begin with `#`, do
-//! not count; a cell may stand between double quotes.
+//! The separator is that of the first line: tabs if it has some, else semicolons, else commas. With tabs and
+//! semicolons, numbers may have decimal commas, all of a table or none. Empty lines, and those that begin with `#`, do
+//! not count; a cell may be in double quotes.
 
 use std::ops::Range;
 
@@ -13,7 +13,7 @@ use super::suggest::clip;
 pub struct Cell<'t> {
     /// Its text.
     pub text: &'t str,
-    /// Where that begins in the table's text, bytes.
+    /// Offset of its text in the table's text, bytes.
     pub start: usize,
     /// The column of its first character in its line, from 1.
     pub column: usize,
@@ -31,7 +31,7 @@ pub struct Line<'t> {
 /// A table.
 #[derive(Clone, Debug)]
 pub struct Table<'t> {
-    /// In order.
+    /// Its lines with cells, in order.
     pub lines: Vec<Line<'t>>,
     separator: char,
     /// Whether some cell is a number with a decimal point.
@@ -39,7 +39,7 @@ pub struct Table<'t> {
 }
 
 impl Cell<'_> {
-    /// Its place in the table's text.
+    /// Its bytes in the table's text.
     pub fn span(&self) -> Range<usize> {
         self.start..self.start + self.text.len()
     }
@@ -66,7 +66,7 @@ impl<'t> Table<'t> {
         Self { lines, separator, has_points }
     }
 
-    /// Whether a line is one of names: some cell of it is no number.
+    /// Whether a line has names: some cell of it is no number.
     pub fn is_heading(&self, line: &Line) -> bool {
         line.cells.iter().any(|cell| self.parsed(cell).is_none())
     }
@@ -82,7 +82,7 @@ impl<'t> Table<'t> {
     /// The number in a cell.
     ///
     /// # Errors
-    /// In words, where it is none that is finite.
+    /// If it is not a finite number, in words.
     pub fn number(&self, cell: &Cell) -> Result<f64, String> {
         match self.parsed(cell) {
             Some((_, true)) if self.has_points => Err(format!(
@@ -97,7 +97,7 @@ impl<'t> Table<'t> {
         }
     }
 
-    /// Why a line has another number of cells than the first one has, in words; `None` where it has as many.
+    /// Error of a line with another number of cells than the first, in words; `None` if the numbers are equal.
     pub fn misfit(&self, line: &Line) -> Option<String> {
         let (count, wanted) = (line.cells.len(), self.lines.first()?.cells.len());
         let cells = |count: usize| if count == 1 { "1 cell".to_owned() } else { format!("{count} cells") };

@@ -8,7 +8,8 @@ use super::codes::Code;
 use super::diagnostic::Diagnostic;
 use super::suggest::clip;
 
-/// The text of a file that a model names, of at most `most` bytes. A pipe or a device may have no end.
+/// Reads the text of a file that a model names, of at most `most` bytes. Refuses pipes and devices, which may have no
+/// end.
 pub fn read_text(path: &Path, most: u64) -> Result<String, Box<Diagnostic>> {
     let metadata = fs::metadata(path).map_err(cannot)?;
     if !metadata.is_file() && !metadata.is_dir() {
@@ -17,7 +18,7 @@ pub fn read_text(path: &Path, most: u64) -> Result<String, Box<Diagnostic>> {
     read_given(path, most)
 }
 
-/// The same of what a person names, which may be a pipe.
+/// The same for a file that the user names, which may be a pipe.
 pub fn read_given(path: &Path, most: u64) -> Result<String, Box<Diagnostic>> {
     let metadata = fs::metadata(path).map_err(cannot)?;
     if metadata.is_dir() {
@@ -29,7 +30,7 @@ pub fn read_given(path: &Path, most: u64) -> Result<String, Box<Diagnostic>> {
     text_of(fs::File::open(path).map_err(cannot)?, most)
 }
 
-/// The bytes of a regular file, at most `most`: a pipe or a device may have no end.
+/// Reads a regular file of at most `most` bytes: a pipe or a device may have no end.
 pub fn regular(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     if !fs::metadata(path)?.is_file() {
         return Err(io::Error::new(io::ErrorKind::InvalidInput, "it is no regular file"));
@@ -42,7 +43,7 @@ pub fn regular(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// The text of a source, of at most `most` bytes.
+/// Reads the text of a source, of at most `most` bytes.
 pub fn text_of(source: impl Read, most: u64) -> Result<String, Box<Diagnostic>> {
     // A file that is not regular (a pipe) has no length: never read more than allowed.
     let mut bytes = Vec::new();
@@ -68,7 +69,7 @@ pub fn text_of(source: impl Read, most: u64) -> Result<String, Box<Diagnostic>> 
 
 fn cannot(error: io::Error) -> Box<Diagnostic> {
     let reason = match error.kind() {
-        // A page has no files but its texts.
+        // A web page has no files except its texts.
         io::ErrorKind::NotFound | io::ErrorKind::Unsupported => "there is no such file".to_owned(),
         io::ErrorKind::PermissionDenied => "permission is denied".to_owned(),
         _ => error.to_string(),

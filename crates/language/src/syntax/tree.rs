@@ -1,4 +1,4 @@
-//! What a text of YAML is: nodes that know their places.
+//! Tree of a YAML text: nodes with their locations.
 
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -18,7 +18,7 @@ pub struct Node {
     pub value: Value,
 }
 
-/// What a node is.
+/// Content of a node.
 #[derive(Clone, Debug)]
 pub enum Value {
     /// A piece of text.
@@ -34,9 +34,9 @@ pub enum Value {
 pub struct Entry {
     /// The key's text.
     pub key: String,
-    /// The key's place.
+    /// The key's location.
     pub key_span: Span,
-    /// What stands behind the key.
+    /// The key's value.
     pub value: Node,
 }
 
@@ -47,9 +47,9 @@ pub struct Scalar {
     pub text: String,
     /// Written without quotes.
     pub plain: bool,
-    /// Where the text stands word for word in the source, if it does.
+    /// Offset of the text in the source, if it is there word for word.
     pub start: Option<usize>,
-    /// What its names stand for, where it is a copy of what the file says.
+    /// Meanings of its names, if it is a copy of a piece of the file.
     pub scope: Option<Arc<Scope>>,
 }
 
@@ -59,7 +59,7 @@ impl Scalar {
         Self { text: text.into(), plain: true, start, scope: None }
     }
 
-    /// Gives the number the other sign.
+    /// Negates the number.
     pub fn negate(&mut self) {
         let scope = self.scope.clone().unwrap_or_default();
         self.scope = Some(Arc::new(scope.with_sign(!scope.is_negated())));
@@ -81,7 +81,7 @@ impl Scalar {
         indices::fill(&self.text, &|name| self.scope.as_ref()?.whole(name))
     }
 
-    /// The place of a part of [`Self::name`]; of the whole node where the name is not as it is written.
+    /// The location of a part of [`Self::name`]; that of the whole node if the name does not end as it is written.
     pub fn place_of_name(&self, node: &Span, part: Span) -> Span {
         let before = self
             .scope
@@ -93,12 +93,12 @@ impl Scalar {
         }
     }
 
-    /// Nothing was written, or `null`.
+    /// Whether nothing was written, or `null`.
     pub fn is_null(&self) -> bool {
         self.plain && matches!(self.text.as_str(), "" | "~" | "null" | "Null" | "NULL")
     }
 
-    /// The place of a part of the text; of the whole node where escapes or line breaks stand between.
+    /// The location of a part of the text; that of the whole node if the text is not in the source word for word.
     pub fn place(&self, node: &Span, part: Span) -> Span {
         match self.start {
             Some(start) => start + part.start..start + part.end,
@@ -116,13 +116,13 @@ impl Node {
         }
     }
 
-    /// The same at a place so much further on.
+    /// The same `by` bytes further on.
     #[must_use]
     pub fn moved(&self, by: usize) -> Self {
         self.copied(by, &|scalar| scalar.clone())
     }
 
-    /// The same at a place so much further on, with its scalars made anew.
+    /// The same `by` bytes further on, with its scalars made anew by `scalar`.
     #[must_use]
     pub fn copied(&self, by: usize, scalar: &impl Fn(&Scalar) -> Scalar) -> Self {
         let moved = |span: &Span| span.start + by..span.end + by;
@@ -152,7 +152,7 @@ impl Node {
         }
     }
 
-    /// Nothing was written, or `null`.
+    /// Whether nothing was written, or `null`.
     pub fn is_null(&self) -> bool {
         self.scalar().is_some_and(Scalar::is_null)
     }

@@ -11,29 +11,29 @@ tuning! {
         mesh_bytes: u64 = 100_000_000, moves "which meshes are refused";
         /// Deepest nesting of mappings and sequences; the grammar needs six.
         yaml_depth: usize = 40, moves "which files are refused";
-        /// Most scalars, beginnings and ends of a file: memory is bounded by it.
+        /// Most scalars, beginnings and ends of collections in a file, which bounds memory.
         yaml_events: usize = 1_000_000, moves "which files are refused";
-        /// Known names that are compared with an unknown one: a model may have many thousands.
+        /// Most known names that are compared with an unknown one: a model may have many thousands.
         names_known: usize = 1000, moves "suggestions in messages";
-        /// Names that are compared: the known ones, and some besides.
+        /// Most names that are compared: the known ones, and some more.
         names_compared: usize = 1100, moves "suggestions in messages";
-        /// Known names that are listed in full.
+        /// Most known names that are listed in full.
         names_listed: usize = 32, moves "the help of messages";
-        /// Names that are listed where there are more.
+        /// Names that are listed if there are more.
         names_of_many: usize = 3, moves "the help of messages";
         /// Longest name that is compared or quoted in full, characters.
         name_length: usize = 60, moves "suggestions and quotes in messages";
-        /// Diagnostics that are shown; the others are counted.
+        /// Most diagnostics that are shown; the others are counted.
         diagnostics_shown: usize = 50, moves "how many messages are shown";
-        /// Occurrences from which on a message is shown once, with the lines of the others.
+        /// Fewest occurrences of a message that is shown once, with the lines of the others.
         occurrences: usize = 3, moves "how repeated messages are shown";
-        /// Lines of repeated messages that are named.
+        /// Most lines of repeated messages that are named.
         lines_named: usize = 8, moves "how repeated messages are shown";
-        /// Lines between two labels that are shown in one piece.
+        /// Most lines between two labels that are shown in one piece.
         lines_together: usize = 6, moves "excerpts in messages";
-        /// Characters of a line on either side of a label that are shown.
+        /// Most characters of a line on either side of a label that are shown.
         line_length: usize = 400, moves "excerpts in messages";
-        /// Characters of a line of help.
+        /// Most characters of a line of help.
         help_length: usize = 100, moves "how help is wrapped";
     }
 }

@@ -1,4 +1,4 @@
-//! Which files a model may name: those in its folder or below, and those in a folder that the user names or below.
+//! Files that a model may name: those in its folder or below, and those in a folder that the user names or below.
 
 use std::collections::BTreeMap;
 use std::path::{Component, Path, PathBuf};
@@ -13,11 +13,11 @@ use super::text_file::read_text;
 /// Folders whose files a model may name.
 #[derive(Clone, Debug)]
 pub struct AllowedFolders {
-    /// The model's: names are from it.
+    /// The model's folder, to which names are relative.
     folder: PathBuf,
-    /// That of `--root`.
+    /// The folder of `--root`.
     root: Option<PathBuf>,
-    /// Texts that stand for files as they are on the disk.
+    /// Texts that replace files on the disk.
     open: OpenTexts,
 }
 
@@ -26,12 +26,12 @@ pub struct AllowedFolders {
 pub struct OpenTexts(Arc<BTreeMap<PathBuf, String>>);
 
 impl OpenTexts {
-    /// Of these files.
+    /// The texts of these files.
     pub fn new(texts: impl IntoIterator<Item = (PathBuf, String)>) -> Self {
         Self(Arc::new(texts.into_iter().map(|(path, text)| (real(&path), text)).collect()))
     }
 
-    /// The same with another.
+    /// The same with another text.
     #[must_use]
     pub fn with(&self, path: PathBuf, text: String) -> Self {
         let mut texts = (*self.0).clone();
@@ -46,7 +46,7 @@ impl OpenTexts {
 }
 
 impl AllowedFolders {
-    /// For the model of a path.
+    /// The folders for the model of a path.
     pub fn of(model: &Path, root: Option<&Path>) -> Self {
         Self {
             folder: model.parent().unwrap_or(Path::new("")).to_owned(),
@@ -55,25 +55,26 @@ impl AllowedFolders {
         }
     }
 
-    /// The same, with texts that stand for files.
+    /// The same, with texts that replace files.
     #[must_use]
     pub fn with_open(self, open: &OpenTexts) -> Self {
         Self { open: open.clone(), ..self }
     }
 
-    /// The text of a file that the model may name, of at most `most` bytes: as it is edited, else as it is stored.
+    /// Reads a file that the model may name: the text that is being edited, else the stored one, of at most `most`
+    /// bytes.
     ///
     /// # Errors
-    /// Where the file cannot be read.
+    /// If the file cannot be read.
     pub fn read(&self, path: &Path, most: u64) -> Result<String, Box<Diagnostic>> {
         self.open.get(path).map_or_else(|| read_text(path, most), |text| Ok(text.to_owned()))
     }
 
-    /// The path, seen from the model's folder, of a file that is named from a folder, which is seen from there too.
-    /// A file that the model may not name is not examined.
+    /// The path, relative to the model's folder, of a file with a name relative to the folder `from`, which is relative
+    /// to the model's folder, too. A file that the model may not name is not examined.
     ///
     /// # Errors
-    /// Where the model may not name it.
+    /// If the model may not name it.
     pub fn find(&self, from: &Path, name: &str) -> Result<PathBuf, Box<Diagnostic>> {
         let path = normal(&from.join(name));
         let folders: Vec<PathBuf> =
@@ -99,13 +100,13 @@ impl AllowedFolders {
         ))
     }
 
-    /// Where a path leads that is seen from the model's folder.
+    /// The full path of one that is relative to the model's folder.
     pub fn full(&self, path: &Path) -> PathBuf {
         self.folder.join(path)
     }
 }
 
-/// A folder without links on the way to it; as it is named where it is not there.
+/// The path of a folder without links in it; with them if the folder does not exist.
 fn real(folder: &Path) -> PathBuf {
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
     folder
@@ -114,7 +115,7 @@ fn real(folder: &Path) -> PathBuf {
         .map_or_else(|_| folder.to_owned(), |path| normal(&path))
 }
 
-/// A path without `.` and, where it can be, without `..`.
+/// A path without `.` and, if possible, without `..`.
 fn normal(path: &Path) -> PathBuf {
     let mut found = PathBuf::new();
     for part in path.components() {

@@ -1,7 +1,7 @@
-//! YAML text → a tree whose every node knows its place.
+//! YAML text → a tree of nodes with their locations.
 //!
-//! Of YAML, a model file uses scalars, sequences and mappings in one document. Anchors, aliases, tags and several
-//! documents are refused: a model is read by people, and read as it is written.
+//! A model file uses YAML's scalars, sequences and mappings in one document. Anchors, aliases, tags and several
+//! documents are refused: people read a model, and read it as it is written.
 
 use std::collections::HashMap;
 
@@ -16,7 +16,7 @@ use super::suggest::clip;
 pub use super::tree::{Entry, Node, Scalar, Value};
 use crate::syntax::tuning::TUNING;
 
-/// Reads one document from a text whose first byte has offset 0; `None` where there is no tree to go on with.
+/// Reads one document from a text whose first byte has offset 0; `None` if there is no usable tree.
 pub fn parse(text: &str, diagnostics: &mut Diagnostics) -> Option<Node> {
     let options = options! {
         emit_comments: false,
@@ -64,7 +64,7 @@ struct Builder<'t, 'd> {
     diagnostics: &'d mut Diagnostics,
     open: Vec<Open>,
     root: Option<Node>,
-    /// Whether something has no name under which to go on with it.
+    /// Whether a key is no name, so that reading stops.
     is_unnamed: bool,
 }
 
@@ -90,7 +90,7 @@ impl Builder<'_, '_> {
         self.diagnostics.push(diagnostic.help(not_yaml::help(self.text, at, kind)));
     }
 
-    /// Takes one event; whether to go on.
+    /// Handles one event. Returns whether to continue.
     fn event(&mut self, event: Event, span: Span) -> bool {
         if event.tag().is_some() {
             self.error(Code::UnsupportedYaml, span.clone(), "tags are not supported", "leave the `!…` out");
@@ -208,19 +208,19 @@ impl Builder<'_, '_> {
         self.add(node);
     }
 
-    /// The items, if the list stands in brackets without what a comma has cut.
+    /// The items; in brackets, those that a comma has cut are joined.
     fn whole_items(&mut self, start: usize, items: Vec<Node>) -> Vec<Node> {
         let flow = self.text.get(start..).is_some_and(|text| text.starts_with('['));
         if flow { join_items(self.text, items, self.diagnostics) } else { items }
     }
 
-    /// The entries, if the mapping stands in braces without what a comma has cut.
+    /// The entries; in braces, those that a comma has cut are joined.
     fn whole_values(&mut self, start: usize, entries: Vec<Entry>) -> Vec<Entry> {
         let flow = self.text.get(start..).is_some_and(|text| text.starts_with('{'));
         if flow { join_values(self.text, entries, self.diagnostics) } else { entries }
     }
 
-    /// The end of a collection without the space behind it: a block ends where the next one begins.
+    /// The end of a collection without the space after it: a block ends where the next one begins.
     fn trimmed(&self, start: usize, end: usize) -> usize {
         self.text.get(start..end).map_or(end, |text| start + text.trim_end().len())
     }

@@ -1,4 +1,4 @@
-//! Codes of messages: a code is a kind of mistake that has one cure, with a page that says so.
+//! Codes of messages: a code is a kind of mistake that has one cure, with a page about it.
 //!
 //! The table has the codes, and `pages/` a page each, whose example is run by a test: it gives the code, and its cure
 //! does not. `recorded.txt` has every number that was ever given, so that none changes its meaning.
@@ -13,10 +13,10 @@ use super::suggest;
 
 pub use table::Code;
 
-/// Where the pages are on the web: GitHub shows them.
+/// Address of the pages on the web: GitHub shows them.
 const PAGES: &str = "https://github.com/mbint/mbint/blob/main/docs/errors";
 
-/// The model that examples of pages change: a section that an example has stands instead of this one's.
+/// The model that examples of pages change: a section of an example replaces that of this model.
 pub const MODEL: &str = include_str!("pages/model.yaml");
 
 const INTRODUCTION: &str = "\
@@ -30,7 +30,7 @@ Examples on these pages are whole models where they say so. Elsewhere their sect
 /// Codes of one stage.
 #[derive(Clone, Copy, Debug)]
 pub struct Block {
-    /// What all of its codes begin with, e.g. `E03`.
+    /// Beginning of all its codes, e.g. `E03`.
     pub letters: &'static str,
     /// The stage.
     pub about: &'static str,
@@ -40,12 +40,12 @@ pub struct Block {
 
 /// An error whose kind of mistake has a code.
 pub trait Coded {
-    /// The code; `None` where nobody has made a mistake, as at an interruption.
+    /// The code; `None` if nobody has made a mistake, as at an interruption.
     fn code(&self) -> Option<Code>;
 }
 
 impl Code {
-    /// The code of this number, in capitals or not; the error says which are near.
+    /// The code of this number, in capitals or not; the error names similar codes.
     pub fn find(text: &str) -> Result<Self, String> {
         let wanted = text.to_ascii_uppercase();
         let ids = || Self::ALL.iter().map(|code| code.id());

@@ -2,8 +2,8 @@
 
 use super::{Triangle, point};
 
-/// 80 bytes, the number of triangles, and of each 12 numbers, normal first, and two bytes; `None` where it is
-/// something else.
+/// Reads 80 bytes, the number of triangles, and for each of them 12 numbers, normal first, and two bytes; `None` if the
+/// file has another form.
 pub fn binary(bytes: &[u8]) -> Option<Vec<Triangle>> {
     let count = u32::from_le_bytes(bytes.get(80..84)?.try_into().ok()?) as usize;
     let triangles = bytes.get(84..)?;
@@ -22,7 +22,7 @@ pub fn binary(bytes: &[u8]) -> Option<Vec<Triangle>> {
     triangles.chunks_exact(50).map(triangle).collect()
 }
 
-/// Lines of which those with `vertex` are corners.
+/// Reads lines, of which those with `vertex` are corners.
 pub fn text(text: &str) -> Result<Vec<Triangle>, String> {
     let mut corners = Vec::new();
     for (line, text) in text.lines().enumerate() {
