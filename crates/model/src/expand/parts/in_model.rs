@@ -110,7 +110,10 @@ impl Writer<'_, '_> {
         let (some, others) = (turns(true), turns(false));
         let is_odd = scope.frame().is_some_and(|frame| frame.mirrors.is_odd());
         if some && others && is_odd && mirror::tells_turns(entry) {
-            let message = format!("`{}` is joints that turn and others, which have other images", clip(&on.text));
+            let message = format!(
+                "`{}` matches joints that turn and joints that do not: their mirror images differ",
+                clip(&on.text)
+            );
             let at = kinds.first()?.value.get("on")?.span.clone();
             self.report.error(
                 Code::BadPlacement,

@@ -43,9 +43,8 @@ impl Recordings<'_> {
         let nominal = self.shown(self.nominal, count);
         let nodes: Vec<Vec<f64>> = self.nodes.iter().map(|node| self.shown(node, count)).collect();
         let fit = |nominal: &[f64], nodes: Vec<&[f64]>| {
-            let of_number =
-                |(index, base): (usize, &f64)| nodes.iter().map(|node| node[index] - base).collect::<Vec<_>>();
-            let values: Vec<f64> = nominal.iter().enumerate().flat_map(of_number).collect();
+            let of_number = |index: usize| nodes.iter().map(move |node| node[index] - nominal[index]);
+            let values: Vec<f64> = (0..nominal.len()).flat_map(of_number).collect();
             surrogate.coefficients(&values, &mut SurrogateWork::default())
         };
         let basis = surrogate.basis();

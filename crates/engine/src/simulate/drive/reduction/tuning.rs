@@ -1,10 +1,10 @@
-//! Constants of the room `simulate: ensemble: reduction`.
+//! Constants of the room `simulate: drive: reduction`.
 
 use symdiff::constants::tuning;
 
 tuning! {
     /// Numbers that a motion is reduced to.
-    "simulate: ensemble: reduction" {
+    "simulate: drive: reduction" {
         /// Points of a path that are evaluated between two steps.
         places_of_path: usize = 4, moves "reduced outputs of paths";
         /// Bisections of a crossing: to the last bit of a share.
