@@ -121,7 +121,7 @@ simulation: {{ duration: 2, step: 1e-3, output_step: 0.05, formulation: {formula
     // 30 (y - a) = 20 a, so that a = 0.6 y; the block feels 100 y + 30 (y - a) = 112 y.
     let bounds = nominal(&read(&text("joint")));
     let exact = |t: f64| 0.3 * (56f64.sqrt() * t).cos();
-    // Of order two: ω³ h² t/12 is 7e-5 of the amplitude, and the damped scheme has as much again.
+    // Second order: ω³ h² t/12 is 7e-5 of the amplitude, and the damped scheme has as much again.
     assert!(distance_from(&bounds.times, curve(&bounds, "y"), exact) < 5e-5);
     let ratio = curve(&bounds, "a").iter().zip(curve(&bounds, "y")).map(|(a, y)| (a - 0.6 * y).abs());
     assert!(ratio.fold(0.0, f64::max) < 1e-10);

@@ -84,7 +84,7 @@ impl<'g> Mechanism<'g, '_> {
         let mut rows = Vec::new();
         let mobilizer = kind.mobilizer().filter(|_| self.tree.contains(joint));
         for (coordinate, name) in [(JointCoordinate::Angle, "angle"), (JointCoordinate::Displacement, "displacement")] {
-            // What a tree moves by needs no definition.
+            // A coordinate by which a tree moves needs no definition.
             if mobilizer.as_ref().is_some_and(|mobilizer| mobilizer.is_counted_by(coordinate)) {
                 continue;
             }

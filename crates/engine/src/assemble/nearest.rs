@@ -139,7 +139,7 @@ impl<'g> Mechanism<'g, '_> {
             JointCoordinate::Angle => {
                 let relative = pair.relative();
                 let (cos, sin) = (relative[0], relative.vector_part().dot(axis));
-                // Of the double of half the angle: q and −q are one rotation.
+                // Sine and cosine of twice the half angle: q and −q are one rotation.
                 (2.0 * cos * sin).atan2(cos * cos - sin * sin)
             }
         })

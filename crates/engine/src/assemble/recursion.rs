@@ -154,7 +154,7 @@ fn inertial_wrench<'g>(body: &Body<'g>, motion: &Motion<'g>) -> Wrench<'g> {
     let half = 0.5 * inertia.trace();
     let second = Matrix::from_fn(|i, j| if i == j { half - inertia[i][j] } else { -inertia[i][j] });
     let rotational = match body.rotation_coordinates {
-        // Of its inertia only that about z is known, and nothing else rotates.
+        // Only the inertia about z is known, and the body turns about no other axis.
         RotationCoordinates::Angle => {
             let zero = body.mass.builder().number(0.0);
             [zero, zero, inertia[2][2] * motion.alpha[2]]

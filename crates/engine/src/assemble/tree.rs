@@ -74,8 +74,8 @@ impl Tree {
         for root in (0..bodies.len()).filter(|&body| reached[body]).collect::<Vec<_>>() {
             tree.merge(root, &welds, &mut reached, &mut queue);
         }
-        // What nothing joins to a root moves freely, and may have children; of merged bodies the one that the start
-        // names.
+        // Bodies that nothing joins to a root move freely, and may have children. The root of merged bodies is the one
+        // that the start names.
         let named = if welds.iter().all(Vec::is_empty) { Vec::new() } else { named_at_start(description) };
         let mut roots = named.into_iter().chain(0..bodies.len());
         loop {

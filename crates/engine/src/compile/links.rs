@@ -81,9 +81,9 @@ impl Linked {
             }
         }
         let mut found: Vec<(Expr, usize)> = Vec::new();
-        // What several links share belongs to the one before. But inertial forces that are the same for a link and its
-        // parent belong to the child: one may be the whole residual of the child's coordinate, which has no pivot
-        // before it is eliminated.
+        // A value that several links share belongs to the first of them. But inertial forces that are the same for a
+        // link and its parent belong to the child: one may be the whole residual of the child's coordinate, which has
+        // no pivot before it is eliminated.
         for (link, child) in system.links.iter().enumerate().rev() {
             let of_parent = child.parent.map_or(&[][..], |parent| &system.links[parent].inertial_forces);
             let shared =

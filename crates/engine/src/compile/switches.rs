@@ -147,7 +147,7 @@ fn arguments(system: &System, graph: &mut Graph) -> (Vec<Expr>, Vec<(Expr, Vec<u
     let moving = [&[system.time][..], &system.motion_symbols()].concat();
     found.sort_unstable();
     found.dedup();
-    // What only jumps does so where something else switches.
+    // An argument that only jumps does so where something else switches.
     found.retain(|&argument| graph.changes_steadily(argument, &moving));
     let index = |of: Expr| of_floor.get(&of).and_then(|sine| found.binary_search(sine).ok());
     let jumps_with = |of: Expr| graph.reachable(&[of]).into_iter().filter_map(index).collect();

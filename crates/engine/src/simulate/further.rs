@@ -13,7 +13,7 @@ pub fn further_outputs(system: &mut System, vibrations: Option<&Vibrations>) {
         modal::further_outputs(system, vibrations);
     }
     match system.analysis {
-        // What a controller does at an equilibrium depends on how it moves.
+        // The action of a controller at an equilibrium depends on its motion.
         Analysis::Statics if !system.has_states() => {
             let taken = |name: &str| system.outputs.iter().any(|output| output.name == name);
             let mut name = STABILITY.to_owned();

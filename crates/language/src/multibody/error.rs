@@ -51,7 +51,7 @@ pub enum BuildError {
     Name {
         /// The name.
         name: String,
-        /// What the formula may depend on.
+        /// Quantities that the formula may depend on.
         allowed: Context,
     },
 }

@@ -193,7 +193,7 @@ fn set_spline_rates(knots: &mut [Knot]) {
     let last = knots.len() - 1;
     let widths: Vec<Scalar> = (0..last).map(|index| knots[index + 1][0] - knots[index][0]).collect();
     let slope = |index: usize| (knots[index + 1][1] - knots[index][1]) / widths[index];
-    // Of each inner knot, the rest of its row: diagonal and right side.
+    // The rest of each inner knot's row: diagonal and right side.
     let mut rows: Vec<(Scalar, Scalar)> = Vec::with_capacity(last);
     for index in 1..last {
         let (before, after) = (widths[index - 1], widths[index]);

@@ -200,7 +200,7 @@ pub(super) fn read_from(origin: ModelOrigin, text: &str, changes: Changes) -> Re
         let (found, idle) = describe(&origin, &variant, parts, &placed, &mut diagnostics);
         diagnostics.found_without(before, &variant.left_out);
         scenes.extend(variant.scene.map(|name| Scene { name, description: found }));
-        // What one of them uses is used.
+        // A name that one of them uses counts as used.
         unused.retain(|warning| idle.iter().any(|found| found.message == warning.message));
         let (name, whole) = plan.place(scene);
         diagnostics.found_in_scene(before, &name, &whole);

@@ -125,7 +125,7 @@ impl SymbolTable for Description {
     }
 
     fn is_on_turning_joint(&self, effect: &str) -> bool {
-        // Of an effect on many, each is called after it.
+        // The parts of an effect on many are named after it.
         let mut ends = effect.match_indices('.').map(|(end, _)| end).chain([effect.len()]);
         !self.turning_effects.is_empty() && ends.any(|end| self.turning_effects.contains(&effect[..end]))
     }

@@ -357,7 +357,7 @@ pub fn unused(reader: &Reader, entries: &[Entry], is_count: impl Fn(&str) -> boo
         let message = format!("parameter `{}` is used nowhere", suggest::clip(&entry.key));
         Diagnostic::warning(Code::UnusedParameter, entry.key_span.clone(), message)
     };
-    // What a robot's numbers do is in its bodies.
+    // Numbers of a robot act in its bodies.
     entries.iter().filter(|entry| !is_of_robot(&entry.key)).filter(unused).map(warning).collect()
 }
 

@@ -219,7 +219,7 @@ mod tests {
                 let (back, rate) = phase.at(time);
                 assert!((back - value).abs() < 1e-12 * (1.0 + value.abs()), "{value}: {back}");
                 if (5.0..31.0).contains(&value.abs()) && value * speed > 0.0 {
-                    // What lies between the rows is the angle's own.
+                    // The course between the rows is that of the angle.
                     let (own, own_rate) = angle(time, speed);
                     assert!((own - value).abs() < 1e-7 && (own_rate - rate).abs() < 1e-4, "{own} {own_rate} {rate}");
                 }

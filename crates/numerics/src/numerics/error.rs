@@ -122,7 +122,7 @@ impl BandError {
         let mut contradicted = vec![false; ranges.len()];
         for (row, (range, simulated)) in ranges.iter().zip(simulated).enumerate() {
             let beyond = range.misses(*simulated);
-            // Of the unknown nothing follows.
+            // An unknown range contradicts nothing.
             if beyond > self.total[row] {
                 let is_rounding =
                     beyond <= TUNING.rounding_of_values * simulated.lower.abs().max(simulated.upper.abs());

@@ -27,7 +27,7 @@ fn sequence() -> Vec<f64> {
         let mut new: Vec<f64> = (0..intervals / 2).map(|j| cos_pi(2 * j + 1, intervals)).collect();
         while !new.is_empty() {
             let spread = |x: &f64| nodes.iter().map(|node| (x - node).abs()).product::<f64>();
-            // Of equals the first.
+            // The first of equal values.
             let best =
                 (1..new.len()).fold(0, |best, next| if spread(&new[next]) > spread(&new[best]) { next } else { best });
             nodes.push(new.remove(best));

@@ -318,7 +318,7 @@ mod tests {
             // The safety of errors is twofold.
             assert!(-range.upper <= 2.0 * error + 1e-12 && error < 0.4, "{at}: {range:?}, {error}");
         }
-        // What leaves the box with a slope has none.
+        // A function that leaves the box with a slope has none.
         let (_, error) = of_line(|x| (x + 2.0).powi(2), 5);
         assert_eq!(error, 0.0);
     }

@@ -72,7 +72,7 @@ impl SobolDecomposition {
             last[first] = term;
             let mut alone = true;
             for cause in active {
-                // Of a zone several parameters are active in one term.
+                // Several parameters of a zone may be active in one term.
                 if std::mem::replace(&mut last[cause], term) != term {
                     total[cause] += part;
                     alone = false;

@@ -159,7 +159,7 @@ impl DesignStudy {
             return None;
         }
         let gain = if self.objective.is_least { nominal.worst - best.worst } else { best.worst - nominal.worst };
-        // Of a value that is nothing but its error there is no share.
+        // A value within its error is no base of a share.
         (nominal.worst.abs() > nominal.error + best.error).then(|| gain / nominal.worst.abs())
     }
 }

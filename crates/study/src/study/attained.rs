@@ -178,7 +178,7 @@ impl<'s, 'm> AttainedSearch<'s, 'm> {
         self.follow(&mut others)?;
         climbs.append(&mut others);
         self.share(&mut climbs)?;
-        // Of samples that stop nothing is known behind.
+        // Nothing is known of a sample after it stops.
         if self.simulated.stop.is_some() {
             return Ok(None);
         }

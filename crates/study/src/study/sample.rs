@@ -134,7 +134,7 @@ fn columns(
     let of_study = |(subsystem, study): (&Subsystem, &Study)| {
         let lines = study.simulator.system.outputs.iter().enumerate();
         let column = |(line, output): (usize, &crate::assemble::OutputInfo)| match subsystem.outputs.get(line) {
-            // What reduced outputs are of is not shown.
+            // Outputs that only reduced outputs need are not shown.
             Some(&number) => (number < own).then_some(number),
             None => {
                 outputs.push((output.name.clone(), output.unit.clone()));

@@ -57,7 +57,7 @@ fn run_all(
             Ok((bounds, summary, kept))
         });
         let (bounds, summary, part) = match found {
-            // What the other subsystems lack is planned in the same round.
+            // Simulations that the other subsystems lack are planned in the same round.
             Ok(Err(RunError::Simulation(SimulationError::Deferred))) => {
                 deferred = true;
                 continue;
@@ -154,7 +154,7 @@ impl<'a> Whole<'a> {
                 outputs[output] = Some(bounds);
             }
         }
-        // What an analysis adds to the model's outputs comes last.
+        // Outputs that an analysis adds come after the model's.
         let further = |done: &Done| done.bounds.outputs[done.subsystem.outputs.len()..].to_vec();
         let outputs = outputs.into_iter().flatten().chain(ran.iter().flat_map(further)).collect();
         if known {

@@ -303,7 +303,7 @@ mod tests {
             let at = |i: i32| 0.0131 * f64::from(i);
             (-2000..2000).map(at).map(|x| (spline.derivative(0, x) - wave(x)).abs()).fold(0.0, f64::max)
         };
-        // Of order four up to the ends, since a periodic one has none.
+        // Fourth order up to the ends, since a periodic spline has none.
         let ratio = error(16) / error(32);
         assert!((ratio - 16.0).abs() < 2.0, "{ratio}");
         assert_eq!(Spline::periodic(&[(0.0, 1.0), (1.0, 2.0)]), Err(SplineError::NotPeriodic));

@@ -99,7 +99,7 @@ impl<'s> SwitchWatch<'s> {
             let [start, end] = self.ends(switch, lane);
             crossing(start, end, h)
         };
-        // What jumps where a whole number is passed has no crossing of its own there.
+        // A value that jumps at a whole number has no crossing of its own there.
         let jumps = move |switch: &usize| {
             self.program.switches[*switch]
                 .jumps_with

@@ -119,7 +119,7 @@ impl<'s> Enclosure<'s> {
         let moved_sizes = moved.bounds(space);
         let mut memory = self.take_memory();
         let spread_of = |y: &[f64]| -> Vec<f64> {
-            // Of q₊, v₊, w₊, λ₊.
+            // Spread of q₊, v₊, w₊, λ₊.
             let mut spread = moved_sizes.times(&self.radii);
             let of_unknowns = follow_sizes.times(&self.radii);
             for i in 0..n {

@@ -88,7 +88,7 @@ impl<'s> LaneSteps<'s> {
             let attached = self.alone[lane].as_ref().is_none_or(|alone| alone.h >= h && !alone.has_switched());
             if within && attached {
                 self.error_ratios[lane] += ratio * h / self.controller.duration;
-                // What follows a switch is not left to the schedule's steps.
+                // The time after a switch is not left to the schedule's steps.
                 self.alone[lane] = crossing.is_some().then(|| self.detached(stepper, lane, h, None));
                 continue;
             }

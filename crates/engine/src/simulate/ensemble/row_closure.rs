@@ -93,7 +93,7 @@ impl<'s> RowClosure<'s> {
             return;
         }
         let settled = self.assembly.correct_until_settled(self.program.position(), layout.q.start);
-        // What cannot be closed stays as it is.
+        // Values that cannot be closed stay as they are.
         let n = layout.q.len();
         for (register, given) in layout.q.clone().zip(motion[..n * width].chunks_exact(width)) {
             let found = self.assembly.tile_mut().lane_mut(register);

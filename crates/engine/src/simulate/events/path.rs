@@ -286,7 +286,7 @@ impl<'s> Path<'s> {
         let found: Vec<(usize, f64)> =
             self.watch.crossings(0, step).map(|(switch, crossing)| (switch, crossing.share)).filter(counts).collect();
         let first = found.iter().map(|(_, share)| *share).fold(f64::INFINITY, f64::min);
-        // Of those that cross at once, the first by number.
+        // The first by number of the switches that cross at once.
         let at_once = |(_, share): &(usize, f64)| (share - first) * step <= TUNING.same_event * self.duration;
         found.into_iter().find(at_once)
     }

@@ -80,7 +80,7 @@ impl<'l> Response<'l> {
         let by_speed = |x: &[f64]| omega * dot(by_v, x);
         let mut found = [by_position(re) - by_speed(im), by_position(im) + by_speed(re)];
         if by_lambda.iter().any(|&value| value != 0.0) {
-            // What the load does not move, constraints hold.
+            // Constraints hold the part of the load that causes no motion.
             let dynamic = |x: &[f64]| {
                 let (held, inertial) = (times(&self.linear.stiffness, x), times(&self.linear.mass, x));
                 held.iter().zip(&inertial).map(|(a, b)| a - omega * omega * b).collect::<Vec<f64>>()

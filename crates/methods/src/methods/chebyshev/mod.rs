@@ -262,7 +262,7 @@ impl BoundingMethod for Chebyshev {
     }
 
     fn follows_events(&self, problem: &Problem) -> bool {
-        // Of an output alone nothing is cut.
+        // Outputs alone are not cut at events.
         problem.composes && (self.expand == Expand::Coordinates || self.degree != Degree::Adaptive)
     }
 

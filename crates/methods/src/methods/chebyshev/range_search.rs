@@ -118,7 +118,7 @@ impl RangeSearch {
             return extremes(&self.lattices, &functions.intervals(&all), &functions.rounding(outputs), evaluate);
         };
         previous.resize(previous.len().max(outputs.iter().max().map_or(0, |most| most + 1)), None);
-        // Of all, or of none.
+        // Neighbours are used only if all outputs have them.
         let neighbours: Option<Vec<Extremes>> = outputs.iter().map(|&output| previous[output].clone()).collect();
         let places = outputs.first().and_then(|&output| functions.places.get(block(output)));
         let places = places.map_or(&[][..], Vec::as_slice);

@@ -199,7 +199,7 @@ fn by_expectation(surplus: &Surpluses, indices: Vec<Vec<u8>>, in_pairs: bool) ->
     let expect = |back: u8| {
         let expected = |levels: &Vec<u8>| (levels.clone(), extrapolated(surplus, levels, back));
         let mut expected: Vec<(Vec<u8>, f64)> = indices.iter().map(expected).collect();
-        // Of equals, the first in the alphabet.
+        // Equal expectations in lexicographic order.
         expected.sort_by(|a, b| b.1.total_cmp(&a.1).then_with(|| a.0.cmp(&b.0)));
         expected
     };

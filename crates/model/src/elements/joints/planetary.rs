@@ -133,7 +133,7 @@ impl Joint for Planetary {
         let senses = self.senses(own, k)?;
         let members = self.members();
         let carrier = members[2].map(|on| (Member::Joint(on), senses[2]));
-        // Of sun and ring against the carrier.
+        // The rim of the sun or the ring, relative to the carrier.
         let rim = |index: usize, radius: Scalar<'g>| -> Rim<'g> {
             let wheel = members[index].map(|on| (Member::Joint(on), senses[index] * radius));
             let carrier = carrier.map(|(member, sense)| (member, -(sense * radius)));

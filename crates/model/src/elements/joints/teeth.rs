@@ -287,7 +287,7 @@ impl<'g, 'k> Mesh<'g, 'k> {
         let opening = pressure.sin() / (pressure.cos() * helix.cos());
         let mut force = pitch.transmitted * pitch.across + opening * pressed * pitch.apart;
         let mut square = 1.0 + opening * opening;
-        // What pushes along the axis is not in the plane.
+        // A thrust along the axis acts in space only.
         if k.is_spatial() {
             let slope = helix.sin() / helix.cos();
             force = force - pitch.hand * slope * pitch.transmitted * pitch.line;

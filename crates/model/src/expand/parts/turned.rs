@@ -73,7 +73,7 @@ fn scope_of(node: &Node, instance: &Arc<Scope>) -> Arc<Scope> {
             Value::Mapping(entries) => entries.iter().find_map(|entry| found(&entry.value)),
         }
     }
-    // What a mirror wrote out by itself has no names, and no prefix.
+    // Numbers that a mirror wrote out by itself have no names, and no prefix.
     let own = found(node).filter(|scope| scope.prefix() == instance.prefix());
     Arc::new(own.unwrap_or(instance).with_sign(false))
 }

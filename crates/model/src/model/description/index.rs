@@ -19,7 +19,7 @@ struct Known {
 impl NameIndex {
     /// Index of the first entry with a name in a list of this length.
     pub fn find<'n>(&self, name: &str, length: usize, name_at: impl Fn(usize) -> &'n str) -> Option<usize> {
-        // What a panic left is compared with the list as everything is.
+        // A state that a panic left is compared with the list like any other.
         let mut known = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let Known { indices, entered } = &mut *known;
         let is_same = |last: &usize| *entered <= length && indices.get(name_at(*last)) == Some(last);

@@ -114,7 +114,7 @@ pub fn faults(triangles: &[Triangle]) -> Faults {
         // Zero has two signs.
         *places.entry(corner.map(|part| (part + 0.0).to_bits())).or_insert(next)
     };
-    // Of each edge, how many triangles have it, and how many more run along it one way than the other.
+    // The number of triangles at each edge, and how many more run along it one way than the other.
     let mut edges: HashMap<(usize, usize), (usize, isize)> = HashMap::new();
     for triangle in triangles {
         let [a, b, c] = triangle.map(&mut place);

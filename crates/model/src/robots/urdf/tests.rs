@@ -146,7 +146,7 @@ fn large_files_are_refused_early() {
         assert_eq!(messages(&text), [message]);
         assert!(start.elapsed() < Duration::from_secs(1), "{:?}: {message}", start.elapsed());
     }
-    // What stands in comments and values counts for nothing.
+    // Markup in comments and values counts for nothing.
     let noise = format!("<!-- {} --><![CDATA[{}]]>", "<a>".repeat(200), "<a>".repeat(200));
     assert!(messages(&format!("<robot><link name='{}'/>{noise}</robot>", "&lt;>".repeat(200))).is_empty());
 }

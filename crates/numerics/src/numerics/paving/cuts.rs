@@ -47,7 +47,7 @@ impl Cut {
         let most = self.normal.iter().fold(0.0_f64, |most, own| most.max(own.abs()));
         let steep: Vec<f64> = self.normal.iter().copied().filter(|own| own.abs() > TUNING.flat * most).collect();
         let flat = self.normal.iter().filter(|own| own.abs() <= TUNING.flat * most);
-        // What flat axes may take away from, or add to, the others.
+        // The most that flat axes may take away from, or add to, the others.
         let (away, beyond) = flat.fold((0.0, 0.0), |sum, own| (sum.0 + own.max(0.0), sum.1 + own.min(0.0)));
         [share_below(&steep, self.inner - away), share_below(&steep, self.outer - beyond)]
     }

@@ -194,7 +194,7 @@ mod tests {
 
     #[test]
     fn published_confidence_intervals() {
-        // Of none of 20 seen: 1 − 0.025^(1/20). Of 4 of 20: (0.0573, 0.4366), Clopper and Pearson's charts.
+        // None of 20 seen: 1 − 0.025^(1/20). Four of 20: (0.0573, 0.4366), Clopper and Pearson's charts.
         let [lower, upper] = share_interval(0, 20);
         assert!(lower == 0.0 && (upper - (1.0 - 0.025_f64.powf(0.05))).abs() < 1e-12);
         let [lower, upper] = share_interval(4, 20);

@@ -114,7 +114,7 @@ mod tests {
     fn few_samples_have_no_far_quantile() {
         let sorted: Vec<f64> = (0..100).map(f64::from).collect();
         assert!(sample_quantile(&sorted, 0.999).value.is_nan());
-        // Of 100 samples the median lies between the 40th and the 61st (tables of the sign test).
+        // The median of 100 samples lies between the 40th and the 61st (tables of the sign test).
         let median = sample_quantile(&sorted, 0.5);
         assert!((median.value, median.sampling) == (49.5, 10.5), "{median:?}");
     }

@@ -156,7 +156,7 @@ fn settled(
             break;
         }
     }
-    // What the linearisation leaves over, or takes too much, is the same for all.
+    // One factor for all makes up for the error of the linearisation.
     let with = |factor: f64| -> Vec<f64> {
         let of = |i: usize| match priced.contains(&i) {
             true => (factor * multiples[i]).clamp(tightest[i], items[i].widest),
@@ -307,7 +307,7 @@ mod tests {
         let found = choose(&mut Stack(vec![0.5, 0.25]), &fixed, &[1.0; 3]).unwrap();
         assert!(found.multiples[0] == 1.0 && (found.multiples[1] - 2.0).abs() < 1e-6, "{found:?}");
         assert_eq!(choose(&mut Stack(vec![1.5, 0.1]), &fixed, &[1.0; 3]), None);
-        // Of a grade and a cost by tolerance: the grade that leaves the other most.
+        // A grade and a cost by tolerance: the pair with the least sum of costs.
         let grades = Choice::Grades(vec![(0.5, 1.0, String::new()), (0.1, 2.0, String::new())]);
         let mixed = [item(grades), item(Choice::Reciprocal(1.0))];
         let found = choose(&mut Stack(vec![1.0, 1.0]), &mixed, &[1.0; 3]).unwrap();

@@ -201,8 +201,8 @@ impl Allocator<'_> {
             model.statistics.asked = true;
             // The quantile to be reported.
             model.statistics.quantiles = vec![share];
-            // Of requirements only: quantiles of outputs over time cost more than all else, and nothing here reads
-            // them.
+            // Statistics of requirements only: quantiles of outputs over time cost more than all else, and nothing here
+            // reads them.
             statistics::run(&model, 0, &options)?
         } else {
             let (bounds, summary, _) = reduced::run(&model, &options, Keep::Nothing)?;
@@ -231,7 +231,7 @@ impl Allocator<'_> {
             let fails = 1.0 - found.interval[0];
             let unused = (1.0 - share - fails) / (1.0 - share);
             *may_fail *= (TUNING.aim * (1.0 - share) / fails.max(1e-3 * (1.0 - share))).clamp(0.2, 5.0);
-            // Of few that fail, a tenth is hardly a change of a tolerance: d ln Φ(−z) is about −z² d ln z.
+            // A tenth of few failures hardly changes a tolerance: d ln Φ(−z) is about −z² d ln z.
             let z = normal_quantile(share);
             return (unused >= 0.0, unused / (z * z).max(1.0));
         }

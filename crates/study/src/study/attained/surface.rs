@@ -51,7 +51,7 @@ impl Surfaces {
             // Nothing varies.
             None => (vec![0.0; k], vec![0.0; k]),
         };
-        // What an end loses by a parameter is the polynomial's difference; its value there may be off.
+        // The loss of an end by a parameter is the polynomial's difference; its value there may be off.
         let moved = |end: &[f64], axis: usize| {
             let mut place = end.to_vec();
             self.causes[axis].iter().for_each(|&own| place[own] = self.nominal[own]);

@@ -42,7 +42,7 @@ pub(super) fn bounds(
     options: &CostOptions,
     progress: &(dyn Fn(f64) + Sync),
 ) -> Result<(Bounds, Summary), RunError> {
-    // Of one simulation there are no bounds.
+    // A single simulation has no bounds.
     let methods = setting.method.curve().is_none().then(Vec::new);
     let interrupted = options.interrupted;
     run(

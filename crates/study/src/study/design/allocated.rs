@@ -69,7 +69,7 @@ pub fn confirmed(
     options: &Options,
 ) -> Result<Option<StudiedPoint>, DesignError> {
     let mut assessed = question.assessed(surface)?;
-    // What a rounded point misses is made up for by tighter tolerances.
+    // Tighter tolerances make up for the margin that a rounded point misses.
     let rounded = axes.rounded(&point).into_iter().map(|own| assessed.restored(own)).collect();
     let point = search::best_of(&mut *assessed, question.goal, rounded, point);
     at_cost(question, axes, &point, DesignKind::Optimum, options)

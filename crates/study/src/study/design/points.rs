@@ -58,7 +58,7 @@ pub fn studied(
     let sign = if question.is_least { -1.0 } else { 1.0 };
     let at_limits = axes.free.iter().zip(point).filter(|(own, value)| **value <= own.lower || **value >= own.upper);
     requirements.truncate(question.required());
-    // Of the verdicts, which are sharper than the bounds in the rows.
+    // The verdicts' margins are sharper than the bounds in the rows.
     let known = requirements.iter().zip(&question.model.requirements);
     let known: Vec<[f64; 2]> =
         known.map(|(found, own)| [found.margin, found.error].map(|part| part / scale(own))).collect();

@@ -73,7 +73,7 @@ fn of_trees(questions: &Questions, absolute: System) -> Result<Simulator, RunErr
     }
     match Candidate::of(absolute, questions, enough(&joint)) {
         Candidate::Runs(absolute) if assemble::has_joints_of_several_axes(questions.description) => {
-            // What the start says of bodies behind such joints are conditions.
+            // Start values of bodies behind such joints are conditions.
             Ok(shortest(questions, absolute, joint, None))
         }
         Candidate::Runs(absolute) => Ok(shorter(absolute, joint)),

@@ -98,7 +98,7 @@ pub fn reduced(study: &Study, rows: &Bounded, progress: &Progress) -> Result<Fou
         found => found?,
     };
     let is_cut = schedule.segments().is_some();
-    // What switches within steps changes instants by their errors.
+    // Switches within steps shift instants by the steps' errors.
     let in_parts = match is_cut || rows.switched_from().is_none() {
         true => in_parts(study, &results, [&direct, &with_halved], is_cut)?,
         false => Vec::new(),

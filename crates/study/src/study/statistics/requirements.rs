@@ -174,7 +174,7 @@ impl<'a> Together<'a> {
             (samples, method) = (self.products.len(), None);
             fails = self.products.iter().filter(|own| !own[1]).count() as f64 / samples as f64;
         }
-        // What lies outside of the surrogate counts against it.
+        // The probability outside of the surrogate's domain counts against the share.
         interval[0] *= 1.0 - self.rows.laws.left_out();
         let ppm = |share: f64| 1e6 * (1.0 - share);
         Some(YieldSummary {
@@ -269,7 +269,7 @@ fn capability(
         let moments: Vec<(f64, f64)> = requirement.outputs.iter().map(own).collect();
         let cpk = moments.iter().map(|(mean, deviation)| mean / (3.0 * deviation)).fold(f64::INFINITY, f64::min);
         let cp = match moments[..] {
-            // Of a response, the same limit at several frequencies.
+            // A response may have one limit at two frequencies, which is no pair of limits.
             _ if requirement.of_results && requirement.limits.len() < 2 => None,
             [(above, deviation), (below, _)] => Some((above + below) / (6.0 * deviation)),
             _ => None,

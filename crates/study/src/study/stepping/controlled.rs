@@ -94,7 +94,7 @@ pub fn steps_error(study: &Study, plan: &StepPlan, samples: &[Sample]) -> Result
         if moves <= (TUNING.constant * size).max(TUNING.rounding * most) {
             return 0.0;
         }
-        // What moves by the steps' errors alone, as an energy does, moves less with halved steps.
+        // An output that moves by the steps' errors alone, as an energy does, moves less with halved steps.
         error / if moves_halved < TUNING.steady * moves { size } else { moves }
     };
     Ok((0..outputs.len()).map(share).fold(0.0, f64::max))

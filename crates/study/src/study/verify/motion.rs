@@ -252,7 +252,7 @@ impl Manufactured {
         let n = equations.system.q.len();
         let [begin, end] = span;
         let coordinates = &equations.system.coordinates;
-        // Of the motion, of states, and slips behind them.
+        // The groups of the motion, of states, and of slips behind them.
         let group = |index: usize| coordinates.get(index).map_or(2, |coordinate| usize::from(coordinate.is_state));
         let times = ChebyshevSeries::nodes(span, TUNING.nodes);
         let mut values = Vec::with_capacity(times.len());

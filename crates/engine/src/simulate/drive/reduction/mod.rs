@@ -128,7 +128,7 @@ impl<'s> Accumulator<'s> {
             self.times.push(time);
             self.values.push(values);
         }
-        // What waits for a step after it has none.
+        // Intervals that wait for a later step are taken without it.
         let first = if self.begun { self.times.len() - 2 } else { 0 };
         for index in first..self.times.len().saturating_sub(1) {
             self.accumulate(index);

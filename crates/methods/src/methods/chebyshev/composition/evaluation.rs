@@ -134,7 +134,7 @@ impl Row<'_> {
     pub(super) fn at_own_ends(&self, outputs: &[usize], found: &[Extent], ways: &[Moves]) -> Vec<[f64; 2]> {
         let mut known: FxHashMap<Vec<u64>, usize> = FxHashMap::default();
         let mut points: Vec<Vec<f64>> = Vec::new();
-        // Of each point: whose, and which end.
+        // Index and end of the extents at each point.
         let mut wanted: Vec<Vec<(usize, usize)>> = Vec::new();
         for (index, extent) in found.iter().enumerate() {
             for (end, at) in extent.places.iter().enumerate() {

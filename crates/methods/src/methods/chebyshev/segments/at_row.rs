@@ -90,7 +90,7 @@ impl Branch {
             doubts.iter_mut().zip(motion.doubts).for_each(|(own, other)| *own = own.max(other));
             Some(motion.values)
         };
-        // Of a fit: leave-one-out errors of its samples.
+        // Leave-one-out errors of a fit's samples.
         let mut left_out = Vec::new();
         let coefficients = match (surrogate.squares(), source) {
             (Some(squares), _) => {

@@ -206,7 +206,7 @@ fn steepest(ascent: &[f64], limits: &[[f64; 2]], surfaces: &[(&[f64], f64)]) -> 
         if lacks <= 0.0 {
             continue;
         }
-        // What costs least ascent goes first: a linear programme with one constraint.
+        // The axis that costs least ascent goes first: a linear programme with one constraint.
         let mut order: Vec<usize> = (0..way.len()).filter(|&axis| slopes[axis] != 0.0).collect();
         let cost = |axis: &usize| (ascent[*axis] / slopes[*axis]).abs();
         order.sort_by(|a, b| cost(a).total_cmp(&cost(b)));

@@ -113,7 +113,7 @@ impl Fitting<'_> {
             let left_out = |(values, scale): (&[f64], f64)| {
                 let [low, high] = [f64::min, f64::max].map(|pick| values.iter().copied().reduce(pick).unwrap_or(0.0));
                 let error = squares.fit(values).map_or(f64::INFINITY, |(_, error)| largest(error));
-                // What varies by rounding only says nothing of a degree.
+                // Values that vary by rounding only say nothing of a degree.
                 if high - low > TUNING.rounding * scale { error / (high - low) } else { 0.0 }
             };
             let times = motions.times.iter().map(|times| (times.as_slice(), duration));

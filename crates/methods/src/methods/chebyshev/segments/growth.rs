@@ -115,7 +115,7 @@ impl Scales {
         let span = |line: usize| {
             let values = motions.nodes.iter().flatten().flat_map(|node| node[line * count..][..count].iter().copied());
             let width = Range::of(&values.collect::<Vec<f64>>()).width();
-            // Of a line that does not move nothing is expected.
+            // A line that does not move counts for nothing.
             if width > 0.0 { width } else { f64::INFINITY }
         };
         Self { shortest: lengths.fold(f64::INFINITY, f64::min), spans: (0..lines).map(span).collect() }
