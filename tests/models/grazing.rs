@@ -2,7 +2,8 @@
 
 use mbint::results::Method;
 
-use super::through_events::{assert_within, integrated, range, thrown};
+use super::through_events::{integrated, range};
+use super::throws_to_a_ceiling::{assert_within, thrown};
 use crate::common::{band, output, read, run_methods};
 
 /// A ball thrown up to a ceiling: gravity, height, speed, stiffness over mass; the duration, the output step and the

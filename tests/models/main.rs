@@ -104,6 +104,7 @@ mod step_control;
 mod switches;
 mod tables;
 mod through_events;
+mod throws_to_a_ceiling;
 mod time_steps;
 mod tolerance;
 mod total_degree;
