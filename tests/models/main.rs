@@ -85,6 +85,7 @@ mod reproducibility;
 mod robot_inertia;
 mod robot_wrenches;
 mod rotation;
+mod rotations_at_the_start;
 mod rows_between_events;
 mod run_all;
 mod scheme_between_events;
