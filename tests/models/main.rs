@@ -69,6 +69,7 @@ mod massless;
 mod metamorphic;
 mod mjcf;
 mod modes;
+mod modes_of_controlled_mechanisms;
 mod modes_with_states;
 mod moving_machines;
 mod peers;
