@@ -83,6 +83,7 @@ mod reduced_gradients;
 mod reduced_of_many;
 mod reductions;
 mod reproducibility;
+mod requirements;
 mod robot_inertia;
 mod robot_wrenches;
 mod rotation;

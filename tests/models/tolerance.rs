@@ -362,3 +362,30 @@ fn what_moves_by_rounding_alone_is_at_rest() {
     assert!(x.nominal.iter().any(|value| *value != 0.0) && x.nominal.iter().all(|value| value.abs() < 1e-13));
     assert_eq!(unresolved(&bounds), 0);
 }
+
+/// Angular momentum about a spring's end is m v r at the start and stays: its changes are the steps' error, and no
+/// error is small relative to them. It takes no shorter steps than the position does.
+#[test]
+fn what_is_conserved_is_resolved_under_a_tolerance() {
+    let text = "
+parameters: { k: 9 N/m ± 4%, v: 1.2 m/s ± 3% }
+bodies: { ground: { points: { O: [0, 0] } }, b: { mass: 1.5, inertia: 0.1, points: { P: [0, 0] } } }
+effects: { s: { spring_damper: { between: [ground.O, b.P], stiffness: k, free_length: 0.4 } } }
+initial: { b.x: 1, b.vy: v }
+outputs: { x: b.x, turns: 1.5*(b.x*b.vy - b.y*b.vx), kept: turns - 1.5*v }
+simulation: { duration: 3, step: 1e-3 }
+bounds: { tolerance: 1e-3 }
+";
+    let (bounds, summary) = run_methods(&read(text), None);
+    for (output, [lower, upper]) in [(1, [1.5 * 1.164, 1.5 * 1.236]), (2, [0.0, 0.0])] {
+        let band = &bounds.outputs[output].bands[0];
+        for row in 0..bounds.times.len() {
+            let error = band.error.total[row];
+            assert!(!band.error.unresolved[row] && error < 1e-4, "{row} {error}");
+            // Rounding of three seconds.
+            let off = (band.lower[row] - lower).abs().max((band.upper[row] - upper).abs());
+            assert!(off <= error + 1e-12, "{row} {off} {error}");
+        }
+    }
+    assert!(summary.methods.iter().all(|method| method.steps < 100), "{:?}", summary.methods);
+}
