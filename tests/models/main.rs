@@ -112,6 +112,7 @@ mod time_steps;
 mod tolerance;
 mod total_degree;
 mod urdf;
+mod urdf_joints;
 mod validation;
 mod vehicles;
 mod verify;
