@@ -4,7 +4,8 @@
 //! Tests of more than a few seconds are ignored, with a note of their time, and have smaller versions next to them.
 
 mod benchmarks;
-mod effects;
 mod events;
+mod friction;
+mod impacts;
 mod positions;
 mod sweeps;
