@@ -104,6 +104,7 @@ mod states_at_rest;
 mod statics;
 mod statistics;
 mod step_control;
+mod subsystems;
 mod switches;
 mod tables;
 mod through_events;
