@@ -29,6 +29,7 @@ mod measured;
 mod measurements;
 mod old_models;
 mod parts;
+mod parts_mirrored;
 mod parts_nested;
 mod parts_placed;
 mod place;
