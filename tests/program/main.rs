@@ -31,6 +31,8 @@ mod old_models;
 mod parts;
 mod parts_mirrored;
 mod parts_nested;
+mod parts_nested_in_space;
+mod parts_nested_in_the_plane;
 mod parts_placed;
 mod place;
 mod readme;
