@@ -43,6 +43,7 @@ mod root;
 mod run_modes;
 mod sample;
 mod scenes;
+mod scenes_run;
 mod schema;
 mod shapes;
 mod shards;
