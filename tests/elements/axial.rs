@@ -68,7 +68,11 @@ fn what_holds_a_boom_in_space_says_with_which_sign() {
     let below = [0.3, 0.5, -0.8];
     let tie = "joints: { hinge: {revolute: {between: [ground, boom.A], axis: y}}, e: {distance: {between: [ground.C, boom.E], length: L}} }
 effects: { ";
-    let by = |element: &str| format!("joints: {{ hinge: {{ revolute: {{ between: [ground, boom.A], axis: y }} }} }}\neffects: {{ e: {{ {element} }}, ");
+    let by = |element: &str| {
+        format!(
+            "joints: {{ hinge: {{ revolute: {{ between: [ground, boom.A], axis: y }} }} }}\neffects: {{ e: {{ {element} }}, "
+        )
+    };
     let cases = [
         (above, tie.replace('L', "1.95"), "joint"),
         (below, tie.replace('L', "1.3"), "joint"),
@@ -79,7 +83,9 @@ effects: { ";
         (above, by("cable: { between: [boom.E, ground.C], stiffness: 3e4, free_length: 1.9 }"), "absolute"),
         (
             below,
-            by("gas_spring: { between: [ground.C, boom.E], diameter: 25 mm, length: 1.4, pressure: 9 bar, volume: 0.1 L }"),
+            by(
+                "gas_spring: { between: [ground.C, boom.E], diameter: 25 mm, length: 1.4, pressure: 9 bar, volume: 0.1 L }",
+            ),
             "absolute",
         ),
     ];

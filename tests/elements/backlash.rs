@@ -28,7 +28,14 @@ simulation: { duration: 0.1, step: 2e-5, output_step: 1e-3 }
 
 #[test]
 fn teeth_store_what_they_take() {
-    assert_balance(&pair("", "  e: { backlash: { between: [a, b], ratio: -1.7, offset: 0.1, backlash: 0.02, stiffness: 20, transition: 0.3 } }", APART), "0");
+    assert_balance(
+        &pair(
+            "",
+            "  e: { backlash: { between: [a, b], ratio: -1.7, offset: 0.1, backlash: 0.02, stiffness: 20, transition: 0.3 } }",
+            APART,
+        ),
+        "0",
+    );
 }
 
 /// Without play, teeth are a spring: x = θ₂ − ratio θ₁ oscillates with ω² = k (1/I₂ + ratio²/I₁).

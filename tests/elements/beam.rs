@@ -101,5 +101,12 @@ fn a_cantilever_has_its_natural_frequency() {
 /// Bent from the start on, its axis askew.
 #[test]
 fn it_stores_what_it_takes() {
-    assert_balance(&pair("", "  e: { beam: { between: [a.P, b.P], axis: [0.2, 1], length: 1.6, axial_stiffness: 50, bending_stiffness: 3 } }", APART), "0");
+    assert_balance(
+        &pair(
+            "",
+            "  e: { beam: { between: [a.P, b.P], axis: [0.2, 1], length: 1.6, axial_stiffness: 50, bending_stiffness: 3 } }",
+            APART,
+        ),
+        "0",
+    );
 }

@@ -37,5 +37,8 @@ simulation: { duration: 9, step: 1e-3, output_step: 1e-3 }
 #[test]
 fn it_stores_what_it_takes() {
     assert_balance(&pair("", "  e: { cable: { between: [a.P, b.P], free_length: 0.05, stiffness: 50 } }", APART), "0");
-    assert_balance(&spatial_pair("", "  e: { cable: { between: [a.P, b.P], free_length: 0.05, stiffness: 50 } }", APART_IN_SPACE), "0");
+    assert_balance(
+        &spatial_pair("", "  e: { cable: { between: [a.P, b.P], free_length: 0.05, stiffness: 50 } }", APART_IN_SPACE),
+        "0",
+    );
 }

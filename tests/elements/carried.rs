@@ -13,8 +13,7 @@ const SPEED: f64 = 20.0;
 /// Largest change, as a share of the largest value, by rounding of metres in forces of millimetres times 1 MN/m.
 const MOST: f64 = 1e-8;
 
-const STEEL: Beam =
-    Beam { length: 0.8, axial: 4e6, bending: [60.0, 90.0], torsional: 45.0, mass: 1.2, turning: 1e-4 };
+const STEEL: Beam = Beam { length: 0.8, axial: 4e6, bending: [60.0, 90.0], torsional: 45.0, mass: 1.2, turning: 1e-4 };
 
 /// A mechanism with an elastic part that is clamped to a carriage, and its inner forces.
 struct Elastic {
@@ -36,7 +35,8 @@ fn elastic() -> Vec<Elastic> {
     let of_body: &[&str] = &["rod.element1.axial", "rod.element1.start_torque", "rod.element3.torque"];
     let mut all = Vec::new();
     for spatial in [false, true] {
-        let (inertia, more) = if spatial { ("[0.02, 0.03, 0.04]", format!(", {in_space}")) } else { ("0.03", String::new()) };
+        let (inertia, more) =
+            if spatial { ("[0.02, 0.03, 0.04]", format!(", {in_space}")) } else { ("0.03", String::new()) };
         all.push(Elastic {
             element: "`beam`, massless",
             spatial,
@@ -59,7 +59,9 @@ fn elastic() -> Vec<Elastic> {
             element: "`superelement`",
             spatial,
             bodies: ends.clone(),
-            effects: format!("  rod: {{ superelement: {{ nodes: [root, tip], matrices: {matrices}, damping: 1e-4 }} }}\n"),
+            effects: format!(
+                "  rod: {{ superelement: {{ nodes: [root, tip], matrices: {matrices}, damping: 1e-4 }} }}\n"
+            ),
             tip: "tip",
             joints: ", clamp: { fixed: [carriage, root] }",
             outputs: &["rod.axial", "clamp.torque"],
@@ -89,7 +91,8 @@ impl Elastic {
             true => format!("initial: {{ tip.x: 0.8, tip.vx: {x}, tip.vy: {y}{third} }}\n"),
             false => String::new(),
         };
-        let mut text = format!("space: {space}\nbodies:\n  carriage: {{ mass: 1, inertia: {inertia} }}\n{}", self.bodies);
+        let mut text =
+            format!("space: {space}\nbodies:\n  carriage: {{ mass: 1, inertia: {inertia} }}\n{}", self.bodies);
         write!(
             text,
             "joints: {{ rail: {{ prismatic: {{ between: [ground, carriage], axis: {} }} }}, drive: {{ motor: {{ on: rail, position: \"{speed}*t\" }} }}{} }}\n\

@@ -113,7 +113,14 @@ fn the_clearance_may_be_uncertain() {
 
 #[test]
 fn an_elastic_bearing_stores_what_it_takes() {
-    assert_balance(&pair("", "  e: { clearance_joint: { between: [a.P, b.P], clearance: 0.01, radius: 2, impact: { stiffness: 20 } } }", APART), "0");
+    assert_balance(
+        &pair(
+            "",
+            "  e: { clearance_joint: { between: [a.P, b.P], clearance: 0.01, radius: 2, impact: { stiffness: 20 } } }",
+            APART,
+        ),
+        "0",
+    );
 }
 
 /// A journal whose centre is beyond the bearing's surface is no joint.

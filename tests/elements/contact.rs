@@ -1,8 +1,8 @@
 //! Contacts, stops and loose joints, against the mechanics of impact.
 
 use crate::common::power::{APART, assert_balance, pair};
-use crate::common::{Subject, curve, distance_from, largest, nominal, order, read, row};
 use crate::common::restitution::restitution;
+use crate::common::{Subject, curve, distance_from, largest, nominal, order, read, row};
 use mbint::results::Bounds;
 
 fn ball(impact: &str) -> Subject {
@@ -237,7 +237,28 @@ fn step_control_resolves_impacts() {
 /// Surfaces that are deep in one another all the time.
 #[test]
 fn elastic_surfaces_store_what_they_take() {
-    assert_balance(&pair("", "  e: { contact: { between: [a.P, b.P], plane: [1, 2], radius: 3, impact: { stiffness: 50 } } }", APART), "0");
-    assert_balance(&pair("", "  e: { contact: { between: [a.P, b.P], circle: 3, radius: 0.9, impact: { stiffness: 20 } } }", APART), "0");
-    assert_balance(&pair("", "  e: { contact: { between: [a.P, b.P], hollow: 0.91, radius: 0.9, impact: { stiffness: 20 } } }", APART), "0");
+    assert_balance(
+        &pair(
+            "",
+            "  e: { contact: { between: [a.P, b.P], plane: [1, 2], radius: 3, impact: { stiffness: 50 } } }",
+            APART,
+        ),
+        "0",
+    );
+    assert_balance(
+        &pair(
+            "",
+            "  e: { contact: { between: [a.P, b.P], circle: 3, radius: 0.9, impact: { stiffness: 20 } } }",
+            APART,
+        ),
+        "0",
+    );
+    assert_balance(
+        &pair(
+            "",
+            "  e: { contact: { between: [a.P, b.P], hollow: 0.91, radius: 0.9, impact: { stiffness: 20 } } }",
+            APART,
+        ),
+        "0",
+    );
 }

@@ -40,12 +40,19 @@ const ALL: [&str; 7] = ["x", "y", "angle", "gap", "rate", "force", "friction"];
 fn an_arc_is_a_part_of_a_circle() {
     let (start, speed) = ([0.1, -0.3], [0.3, 0.0]);
     let bore = ball("hollow: 0.48", start, speed);
-    for arc in ["[[-0.5, 0], { to: [0, -0.5], radius: 0.5 }, { to: [0.5, 0], radius: 0.5 }]", "[[0.5, 0], { to: [0, -0.5], radius: -0.5 }, { to: [-0.5, 0], radius: -0.5 }]"] {
+    for arc in [
+        "[[-0.5, 0], { to: [0, -0.5], radius: 0.5 }, { to: [0.5, 0], radius: 0.5 }]",
+        "[[0.5, 0], { to: [0, -0.5], radius: -0.5 }, { to: [-0.5, 0], radius: -0.5 }]",
+    ] {
         let by_arc = ball(&format!("path: {arc}, rounding: 0.02"), start, speed);
         assert_same(&by_arc, &bore, &["x", "y", "angle", "force", "friction"]);
     }
     let (start, speed) = ([0.05, 0.5], [0.2, 0.0]);
-    let hill = ball("path: [[0.3, 0], { to: [0, 0.3], radius: 0.3 }, { to: [-0.3, 0], radius: 0.3 }], rounding: 0.02", start, speed);
+    let hill = ball(
+        "path: [[0.3, 0], { to: [0, 0.3], radius: 0.3 }, { to: [-0.3, 0], radius: 0.3 }], rounding: 0.02",
+        start,
+        speed,
+    );
     assert_same(&hill, &ball("circle: 0.32", start, speed), &["x", "y", "angle"]);
 }
 

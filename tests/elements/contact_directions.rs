@@ -45,7 +45,10 @@ fn a_puck_turns_towards_the_smooth_direction() {
 #[test]
 fn alike_directions_are_no_directions() {
     let plain = sliding(FRICTION, "plane: z");
-    for along in ["friction_along: { direction: [1, 2, 0], coefficient: 0.6 }", "friction_along: { direction: z, coefficient: 0.1 }"] {
+    for along in [
+        "friction_along: { direction: [1, 2, 0], coefficient: 0.6 }",
+        "friction_along: { direction: z, coefficient: 0.1 }",
+    ] {
         let same = sliding(&format!("{FRICTION}, {along}"), "plane: z");
         for name in ["vx", "vy"] {
             let off = largest(curve(&plain, name).iter().zip(curve(&same, name)).map(|(a, b)| a - b));

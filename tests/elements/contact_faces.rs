@@ -165,9 +165,23 @@ fn central_impacts_reverse_the_speed() {
     let half = |size: f64, share: f64| size * share;
     for (what, first, surface, second, shape, reach) in [
         ("edges", on_edge, solid, across, cube, half(0.3, 2.0_f64.sqrt()) + 0.01),
-        ("corner and side", on_corner, solid, on_edge, "cylinder: [[0, -0.15, 0.15], [0, 0.15, -0.15]], radius: 0.1", 0.2 * 3.0_f64.sqrt() + 0.105),
+        (
+            "corner and side",
+            on_corner,
+            solid,
+            on_edge,
+            "cylinder: [[0, -0.15, 0.15], [0, 0.15, -0.15]], radius: 0.1",
+            0.2 * 3.0_f64.sqrt() + 0.105,
+        ),
         ("corners", on_corner, solid, on_corner, cube, half(0.3, 3.0_f64.sqrt()) + 0.01),
-        ("bar", on_edge, "capsule: [[-1, 0, 0], [1, 0, 0]], rounding: 0.05", across, cube, 0.1 * 2.0_f64.sqrt() + 0.055),
+        (
+            "bar",
+            on_edge,
+            "capsule: [[-1, 0, 0], [1, 0, 0]], rounding: 0.05",
+            across,
+            cube,
+            0.1 * 2.0_f64.sqrt() + 0.055,
+        ),
         ("ball", on_edge, "circle: 0.05", on_corner, cube, 0.1 * 3.0_f64.sqrt() + 0.055),
     ] {
         let bounds = nominal(&read(&format!(
@@ -222,7 +236,10 @@ simulation: {{ duration: 0.4, step: 2e-5, output_step: 0.01 }}
 #[test]
 fn elastic_bodies_keep_their_energy() {
     for (shape, inertia) in [(UPRIGHT, OF_CYLINDER), ("box: [0.3, 0.2, 0.4], radius: 0.01", "[0.033, 0.042, 0.022]")] {
-        for surface in ["block: [0.5, 0.4, 0.3], rounding: 0.03", "hull: [[-0.3, -0.2, -0.2], [0.3, -0.2, -0.2], [0, 0.3, -0.2], [0, 0, 0.2]], rounding: 0.03"] {
+        for surface in [
+            "block: [0.5, 0.4, 0.3], rounding: 0.03",
+            "hull: [[-0.3, -0.2, -0.2], [0.3, -0.2, -0.2], [0, 0.3, -0.2], [0, 0, 0.2]], rounding: 0.03",
+        ] {
             let bounds = nominal(&read(&format!(
                 "
 space: spatial
@@ -253,11 +270,19 @@ fn forces_are_continuous() {
         "body.x: -0.5, body.y: 0.1, body.z: 0.42, body.vx: 1, body.omega: [5, -2, 1]",
     ];
     let mut pairs = 0;
-    for shape in [UPRIGHT, "box: [0.3, 0.2, 0.4], radius: 0.02", "polyhedron: [[0.2, 0, 0], [-0.2, 0.05, 0], [0, 0.2, 0], [0, -0.2, 0.1], [0, 0, 0.3]], radius: 0.02"] {
-        for surface in ["block: [0.5, 0.4, 0.3], rounding: 0.05", "hull: [[-0.3, -0.2, -0.2], [0.3, -0.2, -0.2], [0, 0.3, -0.2], [0, 0, 0.2]], rounding: 0.05", "capsule: [[-0.3, 0, 0], [0.3, 0.1, 0]], rounding: 0.15"] {
+    for shape in [
+        UPRIGHT,
+        "box: [0.3, 0.2, 0.4], radius: 0.02",
+        "polyhedron: [[0.2, 0, 0], [-0.2, 0.05, 0], [0, 0.2, 0], [0, -0.2, 0.1], [0, 0, 0.3]], radius: 0.02",
+    ] {
+        for surface in [
+            "block: [0.5, 0.4, 0.3], rounding: 0.05",
+            "hull: [[-0.3, -0.2, -0.2], [0.3, -0.2, -0.2], [0, 0.3, -0.2], [0, 0, 0.2]], rounding: 0.05",
+            "capsule: [[-0.3, 0, 0], [0.3, 0.1, 0]], rounding: 0.15",
+        ] {
             pairs += 1;
             let start = starts[pairs % 2];
-                let [coarse, fine] = [2e-4, 5e-5].map(|step| {
+            let [coarse, fine] = [2e-4, 5e-5].map(|step| {
                     let bounds = nominal(&read(&format!(
                         "
 space: spatial
@@ -273,8 +298,8 @@ simulation: {{ duration: 1, step: {step:e}, output_step: {step:e} }}
                     let jumps = curve(&bounds, "force").windows(2).zip(shallow.windows(2));
                     largest(jumps.filter(|(_, ok)| ok[0] && ok[1]).map(|(pair, _)| pair[1] - pair[0]))
                 });
-                println!("{shape} {surface}: {coarse:e} {fine:e}");
-                assert!(fine < 0.5 * coarse || coarse < 1e-9, "{shape} {surface} {start}: {coarse:e} {fine:e}");
+            println!("{shape} {surface}: {coarse:e} {fine:e}");
+            assert!(fine < 0.5 * coarse || coarse < 1e-9, "{shape} {surface} {start}: {coarse:e} {fine:e}");
         }
     }
 }
@@ -301,7 +326,12 @@ simulation: {{ duration: 0.1, step: 1e-3 }}
     };
     let [bare, _] = iteration("");
     for surface in ["circle: 0.1", "capsule: [[0, 0, 0], [1, 0, 0]], rounding: 0.1", SLAB, SLAB_AS_HULL] {
-        for shape in [UPRIGHT, "box: [1, 0.2, 0.05]", "polyhedron: [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]", "line: [[0, 0, 0], [1, 0, 0]], radius: 0.1"] {
+        for shape in [
+            UPRIGHT,
+            "box: [1, 0.2, 0.05]",
+            "polyhedron: [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]",
+            "line: [[0, 0, 0], [1, 0, 0]], radius: 0.1",
+        ] {
             let effect = format!(", it: {{ contact: {{ between: [ground, body], {surface}, {shape}, {DAMPED} }} }}");
             let [far, near] = iteration(&effect).map(|count| count - bare);
             println!("{surface} {shape}: {far} far, {near} near");
@@ -313,9 +343,14 @@ simulation: {{ duration: 0.1, step: 1e-3 }}
 /// A mirrored instance has mirrored boxes, polyhedra and cylinders.
 #[test]
 fn an_image_moves_as_the_mirror_shows() {
-    let rock = "hull: [[-0.3, -0.2, 0.2], [0.4, -0.1, 0.25], [0, 0.3, 0.3], [0.05, 0.05, 0.35], [0, 0, 0]], rounding: 0.02";
+    let rock =
+        "hull: [[-0.3, -0.2, 0.2], [0.4, -0.1, 0.25], [0, 0.3, 0.3], [0.05, 0.05, 0.35], [0, 0, 0]], rounding: 0.02";
     for (axis, surface, shape) in [
-        ("x", "block: [0.5, 0.3, 0.2], rounding: 0.02", "polyhedron: [[0.15, 0, 0], [-0.1, 0.05, 0], [0, 0.2, 0.1], [0, -0.15, 0], [0, 0, -0.2]], radius: 0.01"),
+        (
+            "x",
+            "block: [0.5, 0.3, 0.2], rounding: 0.02",
+            "polyhedron: [[0.15, 0, 0], [-0.1, 0.05, 0], [0, 0.2, 0.1], [0, -0.15, 0], [0, 0, -0.2]], radius: 0.01",
+        ),
         ("y", rock, "box: [0.2, 0.1, 0.3], radius: 0.01"),
         ("y", rock, "cylinder: [[-0.1, 0.02, 0], [0.1, 0.05, 0.1]], radius: 0.05"),
     ] {

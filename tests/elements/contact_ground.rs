@@ -8,10 +8,7 @@ use crate::common::{curve, distance, largest, nominal, read};
 #[test]
 fn gaps_are_exact_distances() {
     // (R, ±): height of a hollow R − √(R² − x²), of a bump √(R² − x²) − R.
-    let cases = [
-        ("2 - sqrt(4 - x^2)", 2.0, 2.0, -1.0),
-        ("sqrt(2.25 - x^2) - 1.5", -1.5, 1.5, 1.0),
-    ];
+    let cases = [("2 - sqrt(4 - x^2)", 2.0, 2.0, -1.0), ("sqrt(2.25 - x^2) - 1.5", -1.5, 1.5, 1.0)];
     for (height, middle, radius, side) in cases {
         for (x, y) in [(0.0, 0.4), (0.3, 0.35), (-0.5, 0.5), (0.6, 0.31)] {
             for space in ["planar", "spatial"] {

@@ -47,7 +47,8 @@ fn is_inside(p: Point, points: &[Point]) -> bool {
         let (u, v) = (minus(b, a), minus(c, a));
         let normal = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
         let side = |point: Point| dot(normal, minus(point, a));
-        let (low, high) = points.iter().fold((0.0_f64, 0.0_f64), |(low, high), &point| (low.min(side(point)), high.max(side(point))));
+        let (low, high) =
+            points.iter().fold((0.0_f64, 0.0_f64), |(low, high), &point| (low.min(side(point)), high.max(side(point))));
         let is_face = high - low > 1e-9 && (low > -1e-12 || high < 1e-12);
         !is_face || (low - 1e-12..=high + 1e-12).contains(&side(p))
     })
@@ -263,7 +264,11 @@ simulation: {{ duration: 1, step: 5e-3, output_step: 5e-3 }}
                 let least = distance(0.5 * (low + high)).min(distance(0.0)).min(distance(1.0));
                 if least > 1e-3 {
                     outside += 1;
-                    assert!((-1e-9..0.5e-4 * LENGTH).contains(&(gap[row] + 0.03 - least)), "{a:?} {b:?}: {} not {least}", gap[row] + 0.03);
+                    assert!(
+                        (-1e-9..0.5e-4 * LENGTH).contains(&(gap[row] + 0.03 - least)),
+                        "{a:?} {b:?}: {} not {least}",
+                        gap[row] + 0.03
+                    );
                 }
             }
         }

@@ -105,8 +105,14 @@ fn away(point: Point) -> f64 {
 fn gaps_to_a_block_are_least_distances() {
     let block = "block: [0.6, 0.4, 0.2], rounding: 0.05";
     for (points, start) in [
-        (["[-0.2, 0, 0.1]", "[0.3, 0.1, 0]"], "bar.x: -1, bar.y: 0.7, bar.z: 0.4, bar.vx: 0.5, bar.vy: -0.1, bar.omega.x: 1.3, bar.omega.y: -1.7, bar.omega.z: 2.1"),
-        (["[-0.2, 0, 0.1]", "[0.3, 0.1, 0]"], "bar.x: 0.1, bar.y: -1, bar.z: 0.3, bar.vy: 0.4, bar.omega.x: 0.5, bar.omega.z: 1"),
+        (
+            ["[-0.2, 0, 0.1]", "[0.3, 0.1, 0]"],
+            "bar.x: -1, bar.y: 0.7, bar.z: 0.4, bar.vx: 0.5, bar.vy: -0.1, bar.omega.x: 1.3, bar.omega.y: -1.7, bar.omega.z: 2.1",
+        ),
+        (
+            ["[-0.2, 0, 0.1]", "[0.3, 0.1, 0]"],
+            "bar.x: 0.1, bar.y: -1, bar.z: 0.3, bar.vy: 0.4, bar.omega.x: 0.5, bar.omega.z: 1",
+        ),
         (["[-0.5, -0.3, 0]", "[0.4, 0.5, 0]"], "bar.x: -1, bar.y: 0.2, bar.z: 0.2, bar.vx: 0.5, bar.omega.z: 0.4"),
         (["[-0.4, 0, 0]", "[0.4, 0, 0]"], "bar.x: -1, bar.y: -0.4, bar.z: 0.25, bar.vx: 0.5, bar.vy: 0.2"),
     ] {
@@ -146,7 +152,9 @@ simulation: { duration: 1, step: 5e-4, output_step: 0.05 }
     let last = bounds.times.len() - 1;
     let of = |name: &str| curve(&bounds, name)[last];
     assert!((of("force") - 2.0 * 9.81).abs() < 1e-3, "{}", of("force"));
-    assert!((of("z") - (0.13 - 2.0 * 9.81 / 1e5)).abs() < 1e-7 && (of("a") - of("b")).abs() < 1e-9 && of("x").abs() < 1e-9);
+    assert!(
+        (of("z") - (0.13 - 2.0 * 9.81 / 1e5)).abs() < 1e-7 && (of("a") - of("b")).abs() < 1e-9 && of("x").abs() < 1e-9
+    );
 }
 
 /// An edge against an edge, which corners alone do not find: a ridge that falls across another one bounces as a ball
@@ -175,7 +183,12 @@ simulation: { duration: 0.012, step: 2e-6, output_step: 1e-3 }
     let last = bounds.times.len() - 1;
     let of = |name: &str| curve(&bounds, name)[last];
     // Equal masses exchange their velocities.
-    assert!((of("lower") + 1.0).abs() < 1e-5 && of("box").abs() < 1e-5 && of("spin").abs() < 1e-6, "{} {}", of("lower"), of("box"));
+    assert!(
+        (of("lower") + 1.0).abs() < 1e-5 && of("box").abs() < 1e-5 && of("spin").abs() < 1e-6,
+        "{} {}",
+        of("lower"),
+        of("box")
+    );
     assert!((of("energy") - 0.5).abs() < 1e-6);
 }
 

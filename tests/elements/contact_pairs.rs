@@ -42,13 +42,12 @@ impl Body {
 fn nearest_of(points: &[Point]) -> (Point, Vec<Point>) {
     let mut best: Option<(f64, Point, Vec<Point>)> = None;
     for some in 1_usize..1 << points.len() {
-        let chosen: Vec<Point> = (0..points.len()).filter(|index| some >> index & 1 == 1).map(|index| points[index]).collect();
+        let chosen: Vec<Point> =
+            (0..points.len()).filter(|index| some >> index & 1 == 1).map(|index| points[index]).collect();
         let edges: Vec<Point> = chosen[1..].iter().map(|&point| sum(point, chosen[0], -1.0)).collect();
         let size = edges.len();
-        let mut rows: Vec<Vec<f64>> = edges
-            .iter()
-            .map(|&a| edges.iter().map(|&b| dot(a, b)).chain([-dot(a, chosen[0])]).collect())
-            .collect();
+        let mut rows: Vec<Vec<f64>> =
+            edges.iter().map(|&a| edges.iter().map(|&b| dot(a, b)).chain([-dot(a, chosen[0])]).collect()).collect();
         for pivot in 0..size {
             let row = (pivot..size).max_by(|&a, &b| rows[a][pivot].abs().total_cmp(&rows[b][pivot].abs())).unwrap();
             rows.swap(pivot, row);
@@ -101,7 +100,9 @@ const CORNERS: [Point; 6] =
     [[0.15, 0.0, 0.0], [-0.15, 0.02, 0.0], [0.0, 0.2, 0.0], [0.0, -0.2, 0.05], [0.0, 0.0, 0.22], [0.0, 0.0, -0.25]];
 
 fn corners([x, y, z]: Point) -> Vec<Point> {
-    (0..8).map(|corner| [(0, x), (1, y), (2, z)].map(|(axis, half)| if corner >> axis & 1 == 0 { -half } else { half })).collect()
+    (0..8)
+        .map(|corner| [(0, x), (1, y), (2, z)].map(|(axis, half)| if corner >> axis & 1 == 0 { -half } else { half }))
+        .collect()
 }
 
 fn rounded(keys: &'static str, points: &[Point], reach: f64) -> Body {
@@ -110,13 +111,34 @@ fn rounded(keys: &'static str, points: &[Point], reach: f64) -> Body {
 
 /// Shapes of the second body.
 fn seconds() -> [(&'static str, Body); 5] {
-    let cylinder = Body { disc: Some(([0.0, 0.6, 0.8], 0.1)), ..rounded("cylinder: [[0, -0.06, -0.08], [0, 0.12, 0.16]], radius: 0.1", &[[0.0, -0.06, -0.08], [0.0, 0.12, 0.16]], 0.0) };
+    let cylinder = Body {
+        disc: Some(([0.0, 0.6, 0.8], 0.1)),
+        ..rounded(
+            "cylinder: [[0, -0.06, -0.08], [0, 0.12, 0.16]], radius: 0.1",
+            &[[0.0, -0.06, -0.08], [0.0, 0.12, 0.16]],
+            0.0,
+        )
+    };
     [
         ("sphere", rounded("radius: 0.05", &[[0.0; 3]], 0.05)),
-        ("capsule", rounded("line: [[-0.15, 0.02, 0], [0.2, 0, 0.05]], radius: 0.04", &[[-0.15, 0.02, 0.0], [0.2, 0.0, 0.05]], 0.04)),
+        (
+            "capsule",
+            rounded(
+                "line: [[-0.15, 0.02, 0], [0.2, 0, 0.05]], radius: 0.04",
+                &[[-0.15, 0.02, 0.0], [0.2, 0.0, 0.05]],
+                0.04,
+            ),
+        ),
         ("box", rounded("box: [0.3, 0.2, 0.16], radius: 0.02", &corners([0.15, 0.1, 0.08]), 0.02)),
         ("cylinder", cylinder),
-        ("hull", rounded("polyhedron: [[0.15, 0, 0], [-0.15, 0.02, 0], [0, 0.2, 0], [0, -0.2, 0.05], [0, 0, 0.22], [0, 0, -0.25]], radius: 0.02", &CORNERS, 0.02)),
+        (
+            "hull",
+            rounded(
+                "polyhedron: [[0.15, 0, 0], [-0.15, 0.02, 0], [0, 0.2, 0], [0, -0.2, 0.05], [0, 0, 0.22], [0, 0, -0.25]], radius: 0.02",
+                &CORNERS,
+                0.02,
+            ),
+        ),
     ]
 }
 
@@ -126,9 +148,23 @@ fn firsts() -> [(&'static str, Body); 5] {
     [
         ("plane", rounded("plane: z", &[[8.0, 0.0, 0.0], [-8.0, 8.0, 0.0], [-8.0, -8.0, 0.0], [0.0, 0.0, -8.0]], 0.0)),
         ("sphere", rounded("circle: 0.12", &[[0.0; 3]], 0.12)),
-        ("capsule", rounded("capsule: [[-0.2, 0.1, 0], [0.25, 0, 0.1]], rounding: 0.05", &[[-0.2, 0.1, 0.0], [0.25, 0.0, 0.1]], 0.05)),
+        (
+            "capsule",
+            rounded(
+                "capsule: [[-0.2, 0.1, 0], [0.25, 0, 0.1]], rounding: 0.05",
+                &[[-0.2, 0.1, 0.0], [0.25, 0.0, 0.1]],
+                0.05,
+            ),
+        ),
         ("block", rounded("block: [0.5, 0.3, 0.24], rounding: 0.03", &corners([0.25, 0.15, 0.12]), 0.03)),
-        ("hull", rounded("hull: [[-0.2, -0.1, -0.1], [0.3, -0.1, -0.1], [0, 0.3, -0.1], [0, 0, 0.25]], rounding: 0.03", &tetrahedron, 0.03)),
+        (
+            "hull",
+            rounded(
+                "hull: [[-0.2, -0.1, -0.1], [0.3, -0.1, -0.1], [0, 0.3, -0.1], [0, 0, 0.25]], rounding: 0.03",
+                &tetrahedron,
+                0.03,
+            ),
+        ),
     ]
 }
 
@@ -184,7 +220,12 @@ simulation: {{ duration: 1, step: 5e-3, output_step: 5e-3 }}
             outside += 1;
             touching += usize::from(*gap < 0.0);
             let found = gap + reach;
-            assert!((-1e-6..1e-6 + error).contains(&(found - distance)), "{} {} {row}: {found} not {distance}", first.keys, second.keys);
+            assert!(
+                (-1e-6..1e-6 + error).contains(&(found - distance)),
+                "{} {} {row}: {found} not {distance}",
+                first.keys,
+                second.keys
+            );
         }
     }
     (outside, touching)
@@ -205,7 +246,10 @@ fn assert_pairs(name: &str) {
             (outside, touching) = (outside + found.0, touching + found.1);
         }
         println!("{name} {of_first}: {outside} apart, {touching} of them touching");
-        assert!(outside > 40 && (touching > 3 || first.reach + second.reach == 0.0), "{name} {of_first}: {outside} {touching}");
+        assert!(
+            outside > 40 && (touching > 3 || first.reach + second.reach == 0.0),
+            "{name} {of_first}: {outside} {touching}"
+        );
     }
 }
 

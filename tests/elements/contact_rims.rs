@@ -159,9 +159,11 @@ simulation: {{ duration: 4, step: 1e-3, output_step: 0.01 }}
 /// A centre within a cylinder is pushed out through the nearest of its side and faces; all of K δ²/2 becomes speed.
 #[test]
 fn a_centre_inside_is_pushed_out() {
-    for ([x, y, z], depth, along) in
-        [([0.07, 0.0, 0.1], 0.03, "x"), ([0.021, 0.034, 0.2371], 0.0129, "z"), ([0.003, -0.0817, -0.117], 0.1 - 0.003_f64.hypot(0.0817), "y")]
-    {
+    for ([x, y, z], depth, along) in [
+        ([0.07, 0.0, 0.1], 0.03, "x"),
+        ([0.021, 0.034, 0.2371], 0.0129, "z"),
+        ([0.003, -0.0817, -0.117], 0.1 - 0.003_f64.hypot(0.0817), "y"),
+    ] {
         let bounds = nominal(&read(&format!(
             "
 bodies: {{ ball: {{ mass: 2, inertia: [0.01, 0.01, 0.01] }}, body: {{ mass: 1e6, inertia: [1e6, 1e6, 1e6] }} }}

@@ -99,7 +99,13 @@ simulation: {{ duration: 0.5, step: 1e-4, output_step: 1e-3 }}
             "0.004",
             "ball.angular_velocity",
         );
-        let flat = motion("planar", "block: [1, 0.4]", "ball.angle: 0, ball.angular_velocity: 0", "0.004", "ball.angular_velocity");
+        let flat = motion(
+            "planar",
+            "block: [1, 0.4]",
+            "ball.angle: 0, ball.angular_velocity: 0",
+            "0.004",
+            "ball.angular_velocity",
+        );
         assert_same(&flat, &planar, &["x", "y", "spin", "gap", "force"]);
         let spatial = motion("spatial", "block: [1, 0.4, 2]", "ball.z: 0.3", "[0.004, 0.004, 0.004]", "ball.omega.z");
         assert_same(&spatial, &planar, &["x", "y", "spin", "gap", "force"]);
@@ -125,7 +131,9 @@ fn corners_are_spheres() {
 /// the middle of a cube.
 #[test]
 fn a_centre_inside_is_pushed_out() {
-    for (index, depth) in [([0.05, 0.02, 0.12], 0.08), ([0.0, 0.0, 0.0], 0.2), ([-0.15, 0.0, 0.0], 0.05), ([0.1, 0.1, 0.0], 0.1)] {
+    for (index, depth) in
+        [([0.05, 0.02, 0.12], 0.08), ([0.0, 0.0, 0.0], 0.2), ([-0.15, 0.0, 0.0], 0.05), ([0.1, 0.1, 0.0], 0.1)]
+    {
         let [x, y, z] = index;
         let bounds = nominal(&read(&format!(
             "
@@ -165,9 +173,19 @@ simulation: {{ duration: 1, step: 1e-3, output_step: 0.1 }}
     )));
     let last = row(&bounds, 1.0);
     let of = |name: &str| curve(&bounds, name)[last];
-    assert!((of("floor") - 7.0 * 9.81).abs() < 1e-3 && (of("joint") - 2.0 * 9.81).abs() < 1e-3, "{} {}", of("floor"), of("joint"));
+    assert!(
+        (of("floor") - 7.0 * 9.81).abs() < 1e-3 && (of("joint") - 2.0 * 9.81).abs() < 1e-3,
+        "{} {}",
+        of("floor"),
+        of("joint")
+    );
     // The lower one tilts by M/4Ka² = 4.4e-5 under the load off its middle, and the upper one with it.
-    assert!((of("x") - 0.02).abs() < 3e-5 && of("w").abs() < 1e-5 && (of("z") - 0.32).abs() < 1e-3, "{} {}", of("x"), of("z"));
+    assert!(
+        (of("x") - 0.02).abs() < 3e-5 && of("w").abs() < 1e-5 && (of("z") - 0.32).abs() < 1e-3,
+        "{} {}",
+        of("x"),
+        of("z")
+    );
 }
 
 /// A mirrored instance bounces off mirrored solids.

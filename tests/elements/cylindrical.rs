@@ -1,7 +1,7 @@
 //! Cylindrical joints: MSC Adams.
 
-use crate::common::power::{assert_balance, spatial_pair};
 use crate::common::adams::{Case, compared_with_adams};
+use crate::common::power::{assert_balance, spatial_pair};
 
 const ADAMS: Case = Case {
     name: "cylindrical_joint/Cylindrical",
@@ -17,5 +17,12 @@ compared_with_adams!(ADAMS);
 
 #[test]
 fn its_reactions_do_no_work() {
-    assert_balance(&spatial_pair("  j: { cylindrical: { between: [a.P, b.P], axis: [1, 2, -0.5] } }", "  spring: { spring_damper: { between: [ground.O, b], stiffness: 30, free_length: 0.2 } }", "  j.angle: 0.3\n  j.angular_velocity: -0.8\n  j.displacement: 0.3\n  j.velocity: -0.8"), "0");
+    assert_balance(
+        &spatial_pair(
+            "  j: { cylindrical: { between: [a.P, b.P], axis: [1, 2, -0.5] } }",
+            "  spring: { spring_damper: { between: [ground.O, b], stiffness: 30, free_length: 0.2 } }",
+            "  j.angle: 0.3\n  j.angular_velocity: -0.8\n  j.displacement: 0.3\n  j.velocity: -0.8",
+        ),
+        "0",
+    );
 }

@@ -87,6 +87,9 @@ simulation: { duration: 0.4, step: 1e-3, output_step: 0.02 }
         let [one, two] = [name, other].map(|name| curve(&bounds, name));
         assert!(crate::common::largest(one.iter().zip(two).map(|(one, two)| one + two)) < 1e-9);
         // The holder's torque is at its limit.
-        assert!(name == "torque" || crate::common::largest(one.iter().map(|value| value - one[0])) > 0.01, "{name}: {one:?}");
+        assert!(
+            name == "torque" || crate::common::largest(one.iter().map(|value| value - one[0])) > 0.01,
+            "{name}: {one:?}"
+        );
     }
 }

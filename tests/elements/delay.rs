@@ -30,7 +30,9 @@ fn off(bounds: &Bounds, name: &str, from: f64, wanted: impl Fn(f64) -> f64) -> f
 #[test]
 fn sines_come_late() {
     for (simulation, allowed) in [("step: 2e-4", 1e-6), ("scheme: explicit, tolerance: 1e-10", 1e-9)] {
-        for (order, missed) in [(2, 2.0 / (24.0 * 6.0)), (3, 12.0 / (720.0 * 120.0)), (5, 2880.0 / (3_628_800.0 * 362_880.0))] {
+        for (order, missed) in
+            [(2, 2.0 / (24.0 * 6.0)), (3, 12.0 / (720.0 * 120.0)), (5, 2880.0 / (3_628_800.0 * 362_880.0))]
+        {
             let effects = format!("slow: {{ delay: {{ input: sin(5*t), time: late, order: {order} }} }}");
             let bounds = nominal(&read(&text(&effects, "", "slow: slow", simulation)));
             // x = 1; poles have real parts below −2/T, so that 2 s later nothing is left of the start.
@@ -44,13 +46,17 @@ fn sines_come_late() {
 /// A ramp is late by T itself, whatever T.
 #[test]
 fn bounds_of_a_ramp_are_those_of_its_delay() {
-    let bounds = run(&read(&text("slow: { delay: { input: t, time: late, order: 3 } }", "", "slow: slow", "step: 1e-3")));
+    let bounds =
+        run(&read(&text("slow: { delay: { input: t, time: late, order: 3 } }", "", "slow: slow", "step: 1e-3")));
     assert_eq!(output(&bounds, "slow").unit, "s");
     for method in [Method::Chebyshev, Method::Scan] {
         let band = band(output(&bounds, "slow"), method);
         for (row, &t) in bounds.times.iter().enumerate().filter(|(_, t)| **t > 2.0) {
             let allowed = 1.01 * band.error.total[row] + 1e-12;
-            assert!((band.lower[row] - (t - 0.22)).abs() < allowed && (band.upper[row] - (t - 0.18)).abs() < allowed, "{method:?} at {t}");
+            assert!(
+                (band.lower[row] - (t - 0.22)).abs() < allowed && (band.upper[row] - (t - 0.18)).abs() < allowed,
+                "{method:?} at {t}"
+            );
         }
     }
 }
@@ -83,7 +89,8 @@ fn a_loop_with_a_delay_moves_by_the_method_of_steps() {
 
 #[test]
 fn it_begins_settled() {
-    let effects = "old: { delay: { input: m.x, time: late, initial: 0.5 m } }, slow: { delay: { input: m.x, time: late } }";
+    let effects =
+        "old: { delay: { input: m.x, time: late, initial: 0.5 m } }, slow: { delay: { input: m.x, time: late } }";
     let bounds = nominal(&read(&text(effects, "", "old: old, slow: slow", "step: 1e-3")));
     assert!(off(&bounds, "old", -1.0, |_| 0.5) < 1e-12);
     assert_eq!((output(&bounds, "old").unit.as_str(), curve(&bounds, "slow")[0]), ("m", 0.0));

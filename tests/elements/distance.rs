@@ -1,7 +1,7 @@
 //! Rods of fixed length: the conical pendulum, and MSC Adams.
 
-use crate::common::power::{assert_balance, pair, spatial_pair};
 use crate::common::adams::{Case, compared_with_adams};
+use crate::common::power::{assert_balance, pair, spatial_pair};
 use crate::common::{curve, distance_from, nominal, order, read};
 
 /// A bob on a string goes round at ω² = g / (L cos 30°), also where it only turns about z, and as a whole body.
@@ -55,6 +55,20 @@ compared_with_adams!(ADAMS);
 
 #[test]
 fn its_reactions_do_no_work() {
-    assert_balance(&pair("  j: { distance: { between: [a.P, b.P], length: 0.8 } }", "  spring: { spring_damper: { between: [ground.O, b], stiffness: 30, free_length: 0.2 } }", "  b.angle: -0.6\n  b.angular_velocity: 1.3\n  b.x: 0.9\n  b.vx: 0.3"), "0");
-    assert_balance(&spatial_pair("  j: { distance: { between: [a.P, b.P], length: 0.8 } }", "  spring: { spring_damper: { between: [ground.O, b], stiffness: 30, free_length: 0.2 } }", "  b.omega: [-0.2, 0.5, 1.3]"), "0");
+    assert_balance(
+        &pair(
+            "  j: { distance: { between: [a.P, b.P], length: 0.8 } }",
+            "  spring: { spring_damper: { between: [ground.O, b], stiffness: 30, free_length: 0.2 } }",
+            "  b.angle: -0.6\n  b.angular_velocity: 1.3\n  b.x: 0.9\n  b.vx: 0.3",
+        ),
+        "0",
+    );
+    assert_balance(
+        &spatial_pair(
+            "  j: { distance: { between: [a.P, b.P], length: 0.8 } }",
+            "  spring: { spring_damper: { between: [ground.O, b], stiffness: 30, free_length: 0.2 } }",
+            "  b.omega: [-0.2, 0.5, 1.3]",
+        ),
+        "0",
+    );
 }

@@ -19,11 +19,8 @@ bounds: {{ chebyshev: {{ order: 5 }}, scan: {{ points: 5 }} }}
     )
 }
 
-const SIMULATIONS: [(&str, f64); 3] = [
-    ("step: 1e-3", 2e-5),
-    ("step: 1e-2, extrapolation: 4", 1e-6),
-    ("scheme: explicit, tolerance: 1e-9", 1e-8),
-];
+const SIMULATIONS: [(&str, f64); 3] =
+    [("step: 1e-3", 2e-5), ("step: 1e-2, extrapolation: 4", 1e-6), ("scheme: explicit, tolerance: 1e-9", 1e-8)];
 
 /// A lag, a lead and an integral of a ramp.
 #[test]
@@ -32,7 +29,8 @@ fn filters_of_a_ramp_follow_their_closed_forms() {
   lead: { filter: { input: t, numerator: [0.5 s, 1], denominator: [tau, 1] } },
   whole: { filter: { input: t, numerator: [3], denominator: [1 s, 0] } }";
     for (simulation, allowed) in SIMULATIONS {
-        let bounds = nominal(&read(&filters(effects, "lag: lag, lead: lead, whole: whole, hurry: lag.rate", simulation)));
+        let bounds =
+            nominal(&read(&filters(effects, "lag: lag, lead: lead, whole: whole, hurry: lag.rate", simulation)));
         for (row, &t) in bounds.times.iter().enumerate() {
             let risen = 1.0 - (-t / 0.2).exp();
             let wanted = [t - 0.2 * risen, t + (0.5 - 0.2) * risen, 1.5 * t * t, risen];
@@ -41,7 +39,10 @@ fn filters_of_a_ramp_follow_their_closed_forms() {
                 assert!((found - value).abs() < allowed, "{simulation}: {name} at {t}: {found}, not {value}");
             }
         }
-        assert_eq!(["lag", "lead", "whole", "hurry"].map(|name| output(&bounds, name).unit.clone()), ["s", "s", "s", ""]);
+        assert_eq!(
+            ["lag", "lead", "whole", "hurry"].map(|name| output(&bounds, name).unit.clone()),
+            ["s", "s", "s", ""]
+        );
     }
 }
 
@@ -84,17 +85,26 @@ fn a_filter_of_order_four_is_that_of_scipy() {
 /// the filter in another form (a chain of rates, the output their sum).
 #[test]
 fn a_filter_within_the_loop_moves_as_scipy_says() {
-    let effects = "felt: { filter: { input: m.x, numerator: [0.05 s, 1], denominator: [0.01 s^2, 0.14 s, 1], initial: 0.5 m } },
+    let effects =
+        "felt: { filter: { input: m.x, numerator: [0.05 s, 1], denominator: [0.01 s^2, 0.14 s, 1], initial: 0.5 m } },
   pull: { force: { on: m, value: [20 N/m*(0.2 m - felt) - 3 N*s/m*m.vx, 0] } }";
     let before = effects.split_once(",\n").map(|(filter, pull)| format!("{pull}, {filter}")).unwrap();
-    let wanted = [(1, [0.10422988, -0.84774475, 0.19792115]), (2, [0.10119641, 0.69619274, 0.03750276]), (4, [0.14081410, -0.37987044, 0.18412003]), (6, [0.26922009, -0.06737261, 0.27087265])];
+    let wanted = [
+        (1, [0.10422988, -0.84774475, 0.19792115]),
+        (2, [0.10119641, 0.69619274, 0.03750276]),
+        (4, [0.14081410, -0.37987044, 0.18412003]),
+        (6, [0.26922009, -0.06737261, 0.27087265]),
+    ];
     for (effects, (simulation, allowed)) in [effects, &before].into_iter().zip(SIMULATIONS) {
         let bounds = nominal(&read(&filters(effects, "x: m.x, v: m.vx, felt: felt", simulation)));
         assert_eq!(output(&bounds, "felt").unit, "m");
         for (row, values) in wanted {
             for (name, value) in ["x", "v", "felt"].into_iter().zip(values) {
                 let found = curve(&bounds, name)[row];
-                assert!((found - value).abs() < 3.0 * allowed, "{simulation}: {name} in row {row}: {found}, not {value}");
+                assert!(
+                    (found - value).abs() < 3.0 * allowed,
+                    "{simulation}: {name} in row {row}: {found}, not {value}"
+                );
             }
         }
     }
@@ -110,8 +120,9 @@ fn a_settled_filter_stays() {
         ("[tau, 0]", "[tau, 1]", 0.0),
         ("[1 s^3, 0.4 s^2, 0.1 s, 3]", "[0.01 s^3, 0.2 s^2, tau, 4]", 0.75),
     ] {
-        let effects =
-            format!("it: {{ filter: {{ input: 2 m, numerator: {numerator}, denominator: {denominator}, initial: 2 m }} }}");
+        let effects = format!(
+            "it: {{ filter: {{ input: 2 m, numerator: {numerator}, denominator: {denominator}, initial: 2 m }} }}"
+        );
         let bounds = run(&read(&filters(&effects, "it: it", "step: 1e-2")));
         let band = band(output(&bounds, "it"), Method::Chebyshev);
         let off = largest(band.lower.iter().chain(&band.upper).map(|value| value - 2.0 * gain));
@@ -166,6 +177,10 @@ bounds: {{ chebyshev: {{ order: 2 }} }}
     for (row, time) in bounds.times.iter().enumerate().skip(1) {
         let truth = 1.0 - (-damping * omega * time).exp() * (omega * time).cos();
         let off = (nominal[row] - truth).abs();
-        assert!(band.error.unresolved[row] || band.error.total[row] > 0.8 * off, "{time}: {off} of {}", band.error.total[row]);
+        assert!(
+            band.error.unresolved[row] || band.error.total[row] > 0.8 * off,
+            "{time}: {off} of {}",
+            band.error.total[row]
+        );
     }
 }

@@ -234,7 +234,9 @@ simulation: {{ duration: 0.5, step: 1e-3, output_step: 1e-3 }}
     assert!((back as f64 * 1e-3 / period - 1.0).abs() < 0.03, "{back} {period}");
     let failure = clamped(0.99).refused();
     println!("{failure}");
-    assert!(failure.contains("beam `rod` (it starts straight unless `initial` gives all coordinates of all its nodes)"));
+    assert!(
+        failure.contains("beam `rod` (it starts straight unless `initial` gives all coordinates of all its nodes)")
+    );
 }
 
 /// A slider crank whose rod hardly bends is the one of rigid bodies, motor torque included; the harder, the nearer.

@@ -2,8 +2,8 @@
 
 use mbint::Model;
 
-use crate::common::power::{assert_balance, pair};
 use crate::common::closed_forms::{assert_exact, assert_exact_force};
+use crate::common::power::{assert_balance, pair};
 use crate::common::{nominal, read};
 
 #[test]
@@ -32,7 +32,14 @@ simulation: { duration: 1, step: 0.01, output_step: 0.1 }
 
 #[test]
 fn its_reactions_do_no_work() {
-    assert_balance(&pair("  j: { gear: { between: [a, b], ratio: -2, offset: 0.1 } }", "  spring: { spring_damper: { between: [ground.O, b], stiffness: 30, free_length: 0.2 } }", "  b.x: 0.9\n  b.y: 0.5\n  b.vx: -0.4\n  b.vy: 0.8"), "0");
+    assert_balance(
+        &pair(
+            "  j: { gear: { between: [a, b], ratio: -2, offset: 0.1 } }",
+            "  spring: { spring_damper: { between: [ground.O, b], stiffness: 30, free_length: 0.2 } }",
+            "  b.x: 0.9\n  b.y: 0.5\n  b.vx: -0.4\n  b.vy: 0.8",
+        ),
+        "0",
+    );
 }
 
 /// A ratio does not determine where teeth touch: the reaction of a bearing is refused, with the reason.
@@ -58,7 +65,10 @@ simulation: {{ duration: 0.1, step: 1e-3 }}
     for (what, joint) in [
         ("outputs: { push: jb.force.x }", "jb"),
         ("outputs: { push: 2*ja.force }", "ja"),
-        ("effects: { f: { joint_friction: { on: ja, coefficient: 0.1, radius: 0.01 } } }\noutputs: { a: ja.angle }", "ja"),
+        (
+            "effects: { f: { joint_friction: { on: ja, coefficient: 0.1, radius: 0.01 } } }\noutputs: { a: ja.angle }",
+            "ja",
+        ),
     ] {
         let report = Model::from_yaml_str("test", &text(what)).unwrap_err().to_string();
         let message = format!("the reaction of `{joint}` is not known: the teeth of `mesh` push on it");

@@ -1,7 +1,7 @@
 //! Gravity: free fall and flight.
 
-use crate::common::power::{APART, APART_IN_SPACE, assert_balance, pair, spatial_pair};
 use crate::common::closed_forms::assert_exact;
+use crate::common::power::{APART, APART_IN_SPACE, assert_balance, pair, spatial_pair};
 use crate::common::{nominal, read};
 
 #[test]

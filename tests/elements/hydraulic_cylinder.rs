@@ -34,7 +34,9 @@ fn a_cylinder_behind_its_valve_moves_as_scipy_says() {
     ];
     let cylinder = "rod: 25 mm, valve: 0.6*sin(2*pi*t), supply: 160 bar, tank: 2 bar, leakage: 1e-13, piston_pressure: 50 bar, rod_pressure: 60 bar";
     let load = "  load: { force: { on: carriage, value: [-2000 N - 1000 N*s/m*carriage.vx, 0] } }";
-    for (simulation, allowed) in [("duration: 1, step: 1e-4", 2e-4), ("duration: 1, scheme: explicit, tolerance: 1e-8", 1e-6)] {
+    for (simulation, allowed) in
+        [("duration: 1, step: 1e-4", 2e-4), ("duration: 1, scheme: explicit, tolerance: 1e-8", 1e-6)]
+    {
         let bounds = nominal(&read(&carriage(cylinder, load, simulation)));
         for (time, values) in wanted {
             for ((name, value), size) in ["x", "v", "p", "q"].into_iter().zip(values).zip([1.0, 1.0, 1e7, 1e7]) {
@@ -76,7 +78,8 @@ simulation: {{ duration: 0.5, output_step: 0.025, {simulation} }}
 /// oscillations about the middle have ω² = E (A₁²/V₁ + A₂²/V₂)/m.
 #[test]
 fn sealed_oil_is_a_spring() {
-    let cylinder = "rod: 25 mm, valve: 0, supply: 160 bar, piston_pressure: 50 bar, rod_pressure: 60 bar, modulus: 1 GPa";
+    let cylinder =
+        "rod: 25 mm, valve: 0, supply: 160 bar, piston_pressure: 50 bar, rod_pressure: 60 bar, modulus: 1 GPa";
     let push = "  push: { force: { on: carriage, value: [2000, 0] } }";
     let bounds = nominal(&read(&carriage(cylinder, push, "duration: 0.5, step: 2e-4")));
     let quarter = std::f64::consts::FRAC_PI_4;
@@ -99,7 +102,9 @@ fn sealed_oil_is_a_spring() {
     let stiffness: f64 = areas.iter().zip(volumes).map(|(area, volume)| 1e9 * area * area / volume).sum();
     // From 1 mm/s about the position where the pressures are in balance, within 0.1 % of its frequency.
     let balanced = 50e5 * areas[0] / areas[1];
-    let cylinder = format!("rod: 25 mm, valve: 0, supply: 160 bar, piston_pressure: 50 bar, rod_pressure: {balanced}, modulus: 1 GPa");
+    let cylinder = format!(
+        "rod: 25 mm, valve: 0, supply: 160 bar, piston_pressure: 50 bar, rod_pressure: {balanced}, modulus: 1 GPa"
+    );
     let text = carriage(&cylinder, "", "duration: 0.2, step: 1e-4").replace("carriage.vx: 0", "carriage.vx: 0.001");
     let bounds = nominal(&read(&text));
     let omega = (stiffness / 500.0).sqrt();

@@ -189,5 +189,12 @@ bounds: { chebyshev: { order: 5 }, taylor: { order: 4 }, scan: { points: 21 } }
 
 #[test]
 fn it_takes_torque_times_rate() {
-    assert_balance(&pair("  j: { revolute: [a.P, b.P] }", "  e: { joint_friction: { on: j, coefficient: 0.3, radius: 0.1, transition_velocity: 0.1 } }", "  j.angle: 0.3\n  j.angular_velocity: -0.8"), "e.torque*j.angular_velocity");
+    assert_balance(
+        &pair(
+            "  j: { revolute: [a.P, b.P] }",
+            "  e: { joint_friction: { on: j, coefficient: 0.3, radius: 0.1, transition_velocity: 0.1 } }",
+            "  j.angle: 0.3\n  j.angular_velocity: -0.8",
+        ),
+        "e.torque*j.angular_velocity",
+    );
 }

@@ -170,7 +170,14 @@ simulation: { duration: 2, step: 1e-3, output_step: 0.1 }
 
 #[test]
 fn its_power_is_torque_times_rate() {
-    assert_balance(&pair("  j: { revolute: [a.P, b.P] }\n  drive: { motor: { on: j, position: 0.3 + sin(3*t) } }", "  spring: { spring_damper: { between: [ground.O, b], stiffness: 30, free_length: 0.2 } }", ""), "drive.torque*j.angular_velocity");
+    assert_balance(
+        &pair(
+            "  j: { revolute: [a.P, b.P] }\n  drive: { motor: { on: j, position: 0.3 + sin(3*t) } }",
+            "  spring: { spring_damper: { between: [ground.O, b], stiffness: 30, free_length: 0.2 } }",
+            "",
+        ),
+        "drive.torque*j.angular_velocity",
+    );
 }
 
 /// A motor's torque and force in space have the sign of the joint's axis, and are those of Newton's law.

@@ -1,7 +1,7 @@
 //! Motors whose speed follows a state or a position, against closed forms and motors that are prescribed.
 
-use mbint::results::{Bounds, Method};
 use mbint::Formulation;
+use mbint::results::{Bounds, Method};
 
 use crate::common::power::{assert_balance, pair, spatial_pair};
 use crate::common::{band, curve, distance, distance_from, nominal, output, read, refused, run};
@@ -79,7 +79,8 @@ fn bounds_over_the_lag_are_those_of_the_closed_form() {
                 let band = band(output(&bounds, name), method);
                 for (row, &t) in bounds.times.iter().enumerate() {
                     let all: Vec<f64> = (0..=400).map(|part| of(0.18 + 1e-4 * f64::from(part), t)).collect();
-                    let [low, high] = [f64::min as fn(f64, f64) -> f64, f64::max].map(|of| all.iter().copied().reduce(of).unwrap());
+                    let [low, high] =
+                        [f64::min as fn(f64, f64) -> f64, f64::max].map(|of| all.iter().copied().reduce(of).unwrap());
                     let allowed = band.error.total[row] + 1e-6;
                     let off = (band.lower[row] - low).abs().max((band.upper[row] - high).abs());
                     assert!(off < allowed, "{simulation} {method:?} {name} at {t}: {off:e} {allowed:e}");
@@ -127,7 +128,8 @@ simulation: { duration: 1, output_step: 0.1, step: 2e-3, extrapolation: 4 }
     let bounds = nominal(&read(text));
     let s = off(&bounds, "s", |t| 0.4 - (-2.0 * t).exp() * (0.4 * (4.0 * t).cos() + 0.2 * (4.0 * t).sin()));
     // s̈ = e^{−2t} (8 cos 4t − 4 sin 4t).
-    let force = off(&bounds, "force", |t| 3.0 * (-2.0 * t).exp() * (8.0 * (4.0 * t).cos() - 4.0 * (4.0 * t).sin()).abs());
+    let force =
+        off(&bounds, "force", |t| 3.0 * (-2.0 * t).exp() * (8.0 * (4.0 * t).cos() - 4.0 * (4.0 * t).sin()).abs());
     assert!(s < 1e-9 && force < 1e-7, "{s:e} {force:e}");
 }
 

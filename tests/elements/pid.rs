@@ -33,13 +33,18 @@ fn a_limited_controller_moves_as_scipy_says() {
         (4, [0.99866681, 0.00719213, -0.01161205, -0.00786995]),
     ];
     for (tracking, wanted) in [("", own), (", tracking: 0.1 s", fast)] {
-        for (simulation, allowed) in [("step: 1e-3", 1e-3), ("scheme: explicit, tolerance: 1e-8", 1e-6), ("tolerance: 1e-6, scheme: hht", 2e-5)] {
+        for (simulation, allowed) in
+            [("step: 1e-3", 1e-3), ("scheme: explicit, tolerance: 1e-8", 1e-6), ("tolerance: 1e-6, scheme: hht", 2e-5)]
+        {
             let text = arm(&format!("filter: 20 ms, limit: 6 N*m{tracking}"), simulation, ", d: drive.filtered_rate");
             let bounds = nominal(&read(&text));
             for (row, values) in wanted {
                 for (name, value) in ["s", "w", "I", "d"].into_iter().zip(values) {
                     let found = curve(&bounds, name)[row];
-                    assert!((found - value).abs() < allowed, "{tracking} {simulation}: {name} in {row}: {found}, not {value}");
+                    assert!(
+                        (found - value).abs() < allowed,
+                        "{tracking} {simulation}: {name} in {row}: {found}, not {value}"
+                    );
                 }
             }
         }
@@ -110,7 +115,10 @@ simulation: {{ duration: 2, step: 1e-3, output_step: 0.05 }}
 "
         )
     };
-    let own = text("", "pid: { on: hinge, target: 2*leader.angle, target_rate: 2*leader.angular_velocity, proportional: 20, integral: 30, derivative: 4 }");
+    let own = text(
+        "",
+        "pid: { on: hinge, target: 2*leader.angle, target_rate: 2*leader.angular_velocity, proportional: 20, integral: 30, derivative: 4 }",
+    );
     let written = text(
         "states: { I: { rate: 30 N*m/s*(2*leader.angle - hinge.angle), initial: 0 N*m } }",
         "torque: { on: hinge, value: 20 N*m*(2*leader.angle - hinge.angle) + I + 4 N*m*s*(2*leader.angular_velocity - hinge.angular_velocity) }",

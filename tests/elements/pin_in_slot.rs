@@ -15,5 +15,12 @@ fn the_yoke_is_where_the_pin_is() {
 
 #[test]
 fn its_reactions_do_no_work() {
-    assert_balance(&pair("  j: { pin_in_slot: { between: [a.P, b.P], axis: [1, 2] } }", "  spring: { spring_damper: { between: [ground.O, b], stiffness: 30, free_length: 0.2 } }", "  b.angle: -0.6\n  b.angular_velocity: 1.3\n  b.x: 0.9\n  b.vx: 0.3"), "0");
+    assert_balance(
+        &pair(
+            "  j: { pin_in_slot: { between: [a.P, b.P], axis: [1, 2] } }",
+            "  spring: { spring_damper: { between: [ground.O, b], stiffness: 30, free_length: 0.2 } }",
+            "  b.angle: -0.6\n  b.angular_velocity: 1.3\n  b.x: 0.9\n  b.vx: 0.3",
+        ),
+        "0",
+    );
 }

@@ -15,7 +15,8 @@ fn text(members: &[&str], joints: &str, set: &str) -> String {
     let body = |(name, inertia)| format!("  {name}: {{ inertia: {inertia}, mass: 1 }}\n");
     let bodies = ["sun", "ring", "carrier"].into_iter().zip(INERTIA).filter(|(name, _)| members.contains(name));
     let bodies: String = bodies.map(body).collect();
-    let initial: Vec<String> = members.iter().skip(1).map(|name| format!("{name}.angle: 0, {name}.angular_velocity: 0")).collect();
+    let initial: Vec<String> =
+        members.iter().skip(1).map(|name| format!("{name}.angle: 0, {name}.angular_velocity: 0")).collect();
     let outputs: Vec<String> = members.iter().map(|name| format!("{name}: {name}.angular_velocity")).collect();
     format!(
         "
@@ -136,9 +137,11 @@ simulation: {{ duration: 0.1, step: 1e-3 }}
   jr: { fixed: [ground, ring] }
   jc: { revolute: { between: [ground, carrier], axis: x } }
 ";
-    let chain = "  js: { revolute: [ground, sun] }\n  jr: { revolute: [sun, ring] }\n  jc: { revolute: [ring, carrier] }\n";
+    let chain =
+        "  js: { revolute: [ground, sun] }\n  jr: { revolute: [sun, ring] }\n  jc: { revolute: [ring, carrier] }\n";
     // The sun's angle is that against the carrier: the body in common is the carrier, and the ground would turn on it.
-    let on_carrier = "  jc: { revolute: [ground, carrier] }\n  js: { revolute: [carrier, sun] }\n  jr: { fixed: [ground, ring] }\n";
+    let on_carrier =
+        "  jc: { revolute: [ground, carrier] }\n  js: { revolute: [carrier, sun] }\n  jr: { fixed: [ground, ring] }\n";
     for (joints, set, expected) in [
         (on_carrier, "{ sun: js, carrier: jc, ratio: 3 }", "have to turn on one body that they have in common"),
         (turned, "{ sun: js, carrier: jc, ratio: 3 }", "the axis of `jc` is not parallel to the others"),

@@ -36,5 +36,12 @@ bounds: { chebyshev: { order: 6 }, taylor: { order: 4 }, scan: { points: 9 } }
 
 #[test]
 fn its_reactions_do_no_work() {
-    assert_balance(&spatial_pair("  j: { point_on_plane: { between: [a.P, b.P], normal: [1, 2, -0.5] } }", "  spring: { spring_damper: { between: [ground.O, b], stiffness: 30, free_length: 0.2 } }", "  b.orientation: { rpy: [-0.3, 0.1, 0.5] }\n  b.omega: [-0.2, 0.5, 1.3]\n  b.x: 0.9\n  b.vx: 0.3\n  b.y: 0.5\n  b.vy: 0.8"), "0");
+    assert_balance(
+        &spatial_pair(
+            "  j: { point_on_plane: { between: [a.P, b.P], normal: [1, 2, -0.5] } }",
+            "  spring: { spring_damper: { between: [ground.O, b], stiffness: 30, free_length: 0.2 } }",
+            "  b.orientation: { rpy: [-0.3, 0.1, 0.5] }\n  b.omega: [-0.2, 0.5, 1.3]\n  b.x: 0.9\n  b.vx: 0.3\n  b.y: 0.5\n  b.vy: 0.8",
+        ),
+        "0",
+    );
 }

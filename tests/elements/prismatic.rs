@@ -1,8 +1,8 @@
 //! Prismatic joints: a slope, and MSC Adams.
 
-use crate::common::power::{assert_balance, pair, spatial_pair};
 use crate::common::adams::{Case, compared_with_adams};
 use crate::common::closed_forms::{assert_exact, assert_exact_force};
+use crate::common::power::{assert_balance, pair, spatial_pair};
 use crate::common::{curve, nominal, read};
 
 #[test]
@@ -55,8 +55,22 @@ compared_with_adams!(ADAMS);
 
 #[test]
 fn its_reactions_do_no_work() {
-    assert_balance(&pair("  j: { prismatic: { between: [a.P, b.P], axis: [1, 2], angle: 0.3 } }", "  spring: { spring_damper: { between: [ground.O, b], stiffness: 30, free_length: 0.2 } }", "  j.displacement: 0.3\n  j.velocity: -0.8"), "0");
-    assert_balance(&spatial_pair("  j: { prismatic: { between: [a.P, b.P], axis: [1, 2, -0.5], angle: 0.3 } }", "  spring: { spring_damper: { between: [ground.O, b], stiffness: 30, free_length: 0.2 } }", "  j.displacement: 0.3\n  j.velocity: -0.8"), "0");
+    assert_balance(
+        &pair(
+            "  j: { prismatic: { between: [a.P, b.P], axis: [1, 2], angle: 0.3 } }",
+            "  spring: { spring_damper: { between: [ground.O, b], stiffness: 30, free_length: 0.2 } }",
+            "  j.displacement: 0.3\n  j.velocity: -0.8",
+        ),
+        "0",
+    );
+    assert_balance(
+        &spatial_pair(
+            "  j: { prismatic: { between: [a.P, b.P], axis: [1, 2, -0.5], angle: 0.3 } }",
+            "  spring: { spring_damper: { between: [ground.O, b], stiffness: 30, free_length: 0.2 } }",
+            "  j.displacement: 0.3\n  j.velocity: -0.8",
+        ),
+        "0",
+    );
 }
 
 /// A named displacement is a coordinate without inertia: every placement of the joint starts in absolute coordinates,

@@ -22,8 +22,14 @@ simulation: {{ duration: 3, output_step: 0.25, {simulation} }}
 /// SciPy 1.17, `solve_ivp`, DOP853, rtol 1e-12.
 #[test]
 fn it_follows_as_scipy_says() {
-    let wanted =
-        [(0.25, 0.21942987), (0.5, 0.39092721), (1.0, 0.21441976), (1.5, -0.17888871), (2.0, -0.1802476), (3.0, 0.28955055)];
+    let wanted = [
+        (0.25, 0.21942987),
+        (0.5, 0.39092721),
+        (1.0, 0.21441976),
+        (1.5, -0.17888871),
+        (2.0, -0.1802476),
+        (3.0, 0.28955055),
+    ];
     for (simulation, allowed) in [("step: 1e-3", 1e-4), ("scheme: explicit, tolerance: 1e-8", 1e-6)] {
         let text = follower("input: 0.5*sin(3*t), lag: 50 ms, lower: -0.2, upper: 0.4, initial: 0.1", simulation);
         let bounds = nominal(&read(&text));

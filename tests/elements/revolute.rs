@@ -1,11 +1,11 @@
 //! Revolute joints: reactions of a rod at rest and of a spinning one, and MSC Adams.
 
-use mbint::results::Bounds;
 use mbint::Formulation;
+use mbint::results::Bounds;
 
-use crate::common::power::{assert_balance, pair, spatial_pair};
 use crate::common::adams::{Case, compared_with_adams};
 use crate::common::closed_forms::{assert_converges, assert_exact_force};
+use crate::common::power::{assert_balance, pair, spatial_pair};
 use crate::common::{curve, distance_from, nominal, order, read, row};
 
 #[test]
@@ -76,13 +76,29 @@ const ADAMS: Case = Case {
   a: { mass: 1, inertia: [0.04, 0.1, 0.1], points: { P: [-2, 0, 0] } }
 joints: { j: { revolute: [ground.O, a.P] } }
 initial: { a.orientation: { axis: x, angle: -90 deg } }",
-    at_one: [-0.892381, 0.0, -1.78988, 0.372092, -0.372092, 0.601288, 0.601288, 11.4612, 0.0, 23.2273, 0.0, 2.92614, 0.0],
+    at_one: [
+        -0.892381, 0.0, -1.78988, 0.372092, -0.372092, 0.601288, 0.601288, 11.4612, 0.0, 23.2273, 0.0, 2.92614, 0.0,
+    ],
 };
 
 compared_with_adams!(ADAMS);
 
 #[test]
 fn its_reactions_do_no_work() {
-    assert_balance(&pair("  j: { revolute: [a.P, b.P] }", "  spring: { spring_damper: { between: [ground.O, b], stiffness: 30, free_length: 0.2 } }", "  j.angle: 0.3\n  j.angular_velocity: -0.8"), "0");
-    assert_balance(&spatial_pair("  j: { revolute: { between: [a.P, b.P], axis: [1, 2, -0.5] } }", "  spring: { spring_damper: { between: [ground.O, b], stiffness: 30, free_length: 0.2 } }", "  j.angle: 0.3\n  j.angular_velocity: -0.8"), "0");
+    assert_balance(
+        &pair(
+            "  j: { revolute: [a.P, b.P] }",
+            "  spring: { spring_damper: { between: [ground.O, b], stiffness: 30, free_length: 0.2 } }",
+            "  j.angle: 0.3\n  j.angular_velocity: -0.8",
+        ),
+        "0",
+    );
+    assert_balance(
+        &spatial_pair(
+            "  j: { revolute: { between: [a.P, b.P], axis: [1, 2, -0.5] } }",
+            "  spring: { spring_damper: { between: [ground.O, b], stiffness: 30, free_length: 0.2 } }",
+            "  j.angle: 0.3\n  j.angular_velocity: -0.8",
+        ),
+        "0",
+    );
 }

@@ -1,7 +1,7 @@
 //! Wheels that roll: on a slope, on a plank that slides, on a lever that rocks.
 
-use mbint::results::Method;
 use mbint::Formulation;
+use mbint::results::Method;
 
 use crate::common::power::{assert_balance, pair};
 use crate::common::{band, curve, distance_from, largest, nominal, order, output, read, run};
@@ -75,8 +75,16 @@ fn its_reactions_do_no_work() {
         "  j: { rolling: { between: [a.P, b], axis: [1, 2], radius: 0.2, offset: 0.1 } }",
         "  j: { rolling: { between: [a.P, b], axis: [-1, 0.3], radius: 0.3 } }\n  hinge: { revolute: [ground.O, a] }",
     ] {
-        let start = if joint.contains("hinge") { "  b.angle: 0.2\n  b.angular_velocity: 1.3" } else { "  b.x: 0.9\n  b.vx: 0.3" };
-        let text = pair(joint, "  spring: { spring_damper: { between: [ground.O, b], stiffness: 30, free_length: 0.2 } }", start);
+        let start = if joint.contains("hinge") {
+            "  b.angle: 0.2\n  b.angular_velocity: 1.3"
+        } else {
+            "  b.x: 0.9\n  b.vx: 0.3"
+        };
+        let text = pair(
+            joint,
+            "  spring: { spring_damper: { between: [ground.O, b], stiffness: 30, free_length: 0.2 } }",
+            start,
+        );
         let text = if joint.contains("hinge") {
             text.replace("  a.x: 0.1\n  a.y: -0.2\n", "").replace("  a.vx: 0.7\n  a.vy: 1.1\n", "")
         } else {

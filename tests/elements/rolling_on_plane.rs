@@ -1,7 +1,7 @@
 //! Balls and discs that roll on planes: on a slope, on a turntable, in circles, falling over, on a cart.
 
-use mbint::results::Method;
 use mbint::Formulation;
+use mbint::results::Method;
 
 use crate::common::dormand_prince::dormand_prince;
 use crate::common::power::{APART_IN_SPACE, assert_balance, spatial_pair};
@@ -189,7 +189,10 @@ fn a_coin_falls_over_where_it_rolls_too_slowly() {
             assert!(farthest > 100.0, "{share} of the critical speed: {farthest}");
         } else {
             let wanted = 2.0 * share * share / (share * share - 1.0) - 1.0;
-            assert!((farthest - wanted).abs() < 0.01 * wanted, "{share} of the critical speed: {farthest}, not {wanted}");
+            assert!(
+                (farthest - wanted).abs() < 0.01 * wanted,
+                "{share} of the critical speed: {farthest}, not {wanted}"
+            );
         }
     }
 }
@@ -238,7 +241,10 @@ fn its_reactions_do_no_work() {
     ] {
         let is_kept = |line: &&str| kept.iter().any(|name| line.trim().starts_with(name));
         let start: Vec<&str> = APART_IN_SPACE.lines().filter(is_kept).collect();
-        assert_balance(&spatial_pair(&format!("  j: {{ rolling_on_plane: {{ {joint} }} }}"), "", &start.join("\n")), "0");
+        assert_balance(
+            &spatial_pair(&format!("  j: {{ rolling_on_plane: {{ {joint} }} }}"), "", &start.join("\n")),
+            "0",
+        );
     }
 }
 
@@ -265,7 +271,8 @@ simulation: { duration: 2, step: 1e-3, output_step: 0.1 }
 ";
     // The midpoint of the axle moves along the cart; its centre of mass is d before it (Chaplygin's sleigh, with wheels
     // that turn).
-    let (mass, inertia, before) = (5.0 + 2.0 * 0.25, 0.3 + 0.16 + 2.0 * (0.5 * 0.0625 + 1.25e-3) + 0.5 * 0.0625, 4.0 * 0.2);
+    let (mass, inertia, before) =
+        (5.0 + 2.0 * 0.25, 0.3 + 0.16 + 2.0 * (0.5 * 0.0625 + 1.25e-3) + 0.5 * 0.0625, 4.0 * 0.2);
     let law = |_: f64, [u, omega, heading, ..]: [f64; 5]| {
         let (sin, cos) = heading.sin_cos();
         [(1.0 + before * omega * omega) / mass, -before * u * omega / inertia, omega, u * cos, u * sin]

@@ -77,11 +77,17 @@ fn bounds_are_those_of_the_difference_equation() {
             for method in [Method::Chebyshev, Method::Taylor, Method::Scan] {
                 let band = band(output(&bounds, name), method);
                 for (row, &t) in bounds.times.iter().enumerate() {
-                    let values = (0..=400).map(|index| 36.0 + 0.02 * f64::from(index)).map(|gain| motion(gain, t)[index]);
-                    let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)));
+                    let values =
+                        (0..=400).map(|index| 36.0 + 0.02 * f64::from(index)).map(|gain| motion(gain, t)[index]);
+                    let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
+                        (low.min(value), high.max(value))
+                    });
                     let allowed = 1e-5 * (high - low) + 1.01 * band.error.total[row] + 1e-11;
                     let (below, above) = (band.lower[row] - low, band.upper[row] - high);
-                    assert!(below.abs() < allowed && above.abs() < allowed, "{simulation}: {method:?} of {name} at {t}: {below:e}, {above:e}");
+                    assert!(
+                        below.abs() < allowed && above.abs() < allowed,
+                        "{simulation}: {method:?} of {name} at {t}: {below:e}, {above:e}"
+                    );
                 }
             }
         }
@@ -93,7 +99,12 @@ fn bounds_are_those_of_the_difference_equation() {
 #[test]
 fn deadbeat_control_brings_a_mass_to_rest_in_two_periods() {
     let command = "input: -(2 kg)/(50 ms)^2*m.x - 1.5*(2 kg)/(50 ms)*m.vx";
-    let bounds = nominal(&read(&text(command, "", "x: m.x, v: m.vx, gain: gain + rub*(1 m/s)/(1 m)", "step: 5e-3, output_step: 0.05")));
+    let bounds = nominal(&read(&text(
+        command,
+        "",
+        "x: m.x, v: m.vx, gain: gain + rub*(1 m/s)/(1 m)",
+        "step: 5e-3, output_step: 0.05",
+    )));
     for name in ["x", "v"] {
         let curve = curve(&bounds, name);
         assert!(curve[1].abs() > 1e-2, "{curve:?}");

@@ -43,5 +43,12 @@ simulation: { duration: 4, step: 1e-2, output_step: 0.1 }
 
 #[test]
 fn its_reactions_do_no_work() {
-    assert_balance(&spatial_pair("  j: { screw: { between: [a.P, b.P], axis: [0, 1, 0.2], pitch: 0.3 } }", "  spring: { spring_damper: { between: [ground.O, b], stiffness: 30, free_length: 0.2 } }", "  j.angle: 0.3\n  j.angular_velocity: -0.8"), "0");
+    assert_balance(
+        &spatial_pair(
+            "  j: { screw: { between: [a.P, b.P], axis: [0, 1, 0.2], pitch: 0.3 } }",
+            "  spring: { spring_damper: { between: [ground.O, b], stiffness: 30, free_length: 0.2 } }",
+            "  j.angle: 0.3\n  j.angular_velocity: -0.8",
+        ),
+        "0",
+    );
 }

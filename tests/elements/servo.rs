@@ -68,7 +68,14 @@ simulation: {{ duration: 1e-3, step: 1e-3 }}
 
 #[test]
 fn its_power_is_torque_times_rate() {
-    assert_balance(&pair("  j: { revolute: [a.P, b.P] }", "  e: { servo: { on: j, target: 0.5, proportional: 40, derivative: 1.2 } }", "  j.angle: 0.3\n  j.angular_velocity: -0.8"), "(40*(0.5 - j.angle) - 1.2*j.angular_velocity)*j.angular_velocity");
+    assert_balance(
+        &pair(
+            "  j: { revolute: [a.P, b.P] }",
+            "  e: { servo: { on: j, target: 0.5, proportional: 40, derivative: 1.2 } }",
+            "  j.angle: 0.3\n  j.angular_velocity: -0.8",
+        ),
+        "(40*(0.5 - j.angle) - 1.2*j.angular_velocity)*j.angular_velocity",
+    );
 }
 
 /// A target may be a state: an arm that follows a lagging command equals `states` and a torque that write it out, with
@@ -89,7 +96,8 @@ simulation: {{ duration: 1, step: 1e-3, output_step: 0.05 }}
 "
         )
     };
-    let servo = "servo: { on: hinge, target: command, target_rate: (1 rad - command)/(0.2 s), proportional: k, derivative: 3 }";
+    let servo =
+        "servo: { on: hinge, target: command, target_rate: (1 rad - command)/(0.2 s), proportional: k, derivative: 3 }";
     let written = "torque: { on: hinge, value: k*(command - hinge.angle) + 3 N*m*s/rad*((1 rad - command)/(0.2 s) - hinge.angular_velocity) }";
     let [servo, written] = [servo, written].map(|drive| run(&read(&text(drive))));
     let bands = [&servo, &written].map(|bounds| band(output(bounds, "s"), Method::Chebyshev));

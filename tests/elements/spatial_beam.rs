@@ -167,7 +167,9 @@ fn a_moment_rolls_a_cantilever_up() {
 fn an_arc_bends_out_of_its_plane() {
     let stiffness = Stiffness { axial: 1e7, torsional: 5e6 / 6.0, bending: [1e7 / 12.0; 2], shear: Some(5e6) };
     for (force, published) in [(300.0, [22.33, 58.84, 40.08]), (600.0, [15.79, 47.23, 53.37])] {
-        let along = |node: usize| format!("node_{node}.x: radius*sin({node}*turn), node_{node}.y: radius*(1 - cos({node}*turn))");
+        let along = |node: usize| {
+            format!("node_{node}.x: radius*sin({node}*turn), node_{node}.y: radius*(1 - cos({node}*turn))")
+        };
         let guess = (1..=8).map(along).collect::<Vec<_>>().join(", ");
         let bounds = nominal(&read(&format!(
             "
@@ -199,7 +201,9 @@ outputs: {{ x: node_8.x, y: node_8.y, z: node_8.z }}
         let [along, aside, up] = tip(&bounds);
         let exact = rod(stiffness, 100.0 * PI / 4.0, 0.01, [0.0, 0.0, force]);
         println!("{force}: {along} {aside} {up}, a continuous arc {exact:?}");
-        for (found, (published, exact)) in [aside, along, up].into_iter().zip(published.into_iter().zip([exact[1], exact[0], exact[2]])) {
+        for (found, (published, exact)) in
+            [aside, along, up].into_iter().zip(published.into_iter().zip([exact[1], exact[0], exact[2]]))
+        {
             assert!((found - published).abs() < 0.3 && (found - exact).abs() < 0.25, "{found}, {published}, {exact}");
         }
     }
@@ -237,7 +241,9 @@ outputs: { y: rod.end.y, z: rod.end.z, roll: rod.end.p1 }
     let torsion = 0.25 * (0.2_f64 / (4.0 / 2000.0)).sqrt();
     let second = 4.694_091_13_f64.powi(2) / (2.0 * PI);
     // Sections turn, which lowers frequencies a little: by less than half of β² EI/EA (Rayleigh) times a number near 4.
-    for (mode, wanted, within) in [(1, first, 2e-3), (2, first * 3.0_f64.sqrt(), 6e-3), (3, torsion, 4e-3), (4, second, 1.5e-2)] {
+    for (mode, wanted, within) in
+        [(1, first, 2e-3), (2, first * 3.0_f64.sqrt(), 6e-3), (3, torsion, 4e-3), (4, second, 1.5e-2)]
+    {
         let found = value(&bounds, &format!("mode{mode}.frequency"));
         println!("mode {mode}: {found} for {wanted}");
         assert!((found / wanted - 1.0).abs() < within, "mode {mode}: {found} instead of {wanted}");
@@ -276,7 +282,8 @@ simulation: { duration: 3, step: 1e-3, output_step: 0.1, alpha: -0.02 }
         let wanted = 5.0 + (impulse * time - lever) / 10.0;
         assert!((x - wanted).abs() < 2e-5, "{x} instead of {wanted} at {time}");
     }
-    let energy: Vec<f64> = times.iter().zip(curve(&bounds, "energy")).filter(|(t, _)| **t > 0.55).map(|(_, &e)| e).collect();
+    let energy: Vec<f64> =
+        times.iter().zip(curve(&bounds, "energy")).filter(|(t, _)| **t > 0.55).map(|(_, &e)| e).collect();
     let drift = largest(energy.iter().map(|value| value - energy[0]));
     println!("energy {} drifts by {drift:e}", energy[0]);
     assert!(energy[0] > 1.0 && drift < 1e-4 * energy[0], "{drift:e} of {}", energy[0]);

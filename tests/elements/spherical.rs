@@ -1,7 +1,7 @@
 //! Spherical joints: MSC Adams.
 
-use crate::common::power::{assert_balance, spatial_pair};
 use crate::common::adams::{Case, compared_with_adams};
+use crate::common::power::{assert_balance, spatial_pair};
 
 const ADAMS: Case = Case {
     name: "spherical_joint/Spherical",
@@ -17,5 +17,12 @@ compared_with_adams!(ADAMS);
 
 #[test]
 fn its_reactions_do_no_work() {
-    assert_balance(&spatial_pair("  j: { spherical: [a.P, b.P] }", "  spring: { spring_damper: { between: [ground.O, b], stiffness: 30, free_length: 0.2 } }", "  b.orientation: { rpy: [-0.3, 0.1, 0.5] }\n  b.omega: [-0.2, 0.5, 1.3]"), "0");
+    assert_balance(
+        &spatial_pair(
+            "  j: { spherical: [a.P, b.P] }",
+            "  spring: { spring_damper: { between: [ground.O, b], stiffness: 30, free_length: 0.2 } }",
+            "  b.orientation: { rpy: [-0.3, 0.1, 0.5] }\n  b.omega: [-0.2, 0.5, 1.3]",
+        ),
+        "0",
+    );
 }

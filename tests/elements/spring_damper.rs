@@ -2,9 +2,9 @@
 
 use std::fmt::Write as _;
 
-use crate::common::power::{APART, APART_IN_SPACE, assert_balance, pair, spatial_pair};
 use crate::common::adams::{Case, compared_with_adams};
 use crate::common::closed_forms::assert_converges;
+use crate::common::power::{APART, APART_IN_SPACE, assert_balance, pair, spatial_pair};
 use crate::common::{curve, distance_from, nominal, read};
 
 #[test]
@@ -96,9 +96,26 @@ compared_with_adams!(ADAMS);
 
 #[test]
 fn a_spring_stores_and_a_damper_takes() {
-    assert_balance(&pair("", "  e: { spring_damper: { between: [a.P, b.P], stiffness: 50, free_length: 0.4 } }", APART), "0");
-    assert_balance(&pair("", "  e: { spring_damper: { between: [a.P, b.P], along: [3, 4], stiffness: 50, damping: 7, free_length: 0.4 } }", APART), "-7*(0.6*(b.P.vx - a.P.vx) + 0.8*(b.P.vy - a.P.vy))^2");
-    assert_balance(&spatial_pair("", "  e: { spring_damper: { between: [a.P, b.P], stiffness: 50, damping: 7, free_length: 0.4 } }", APART_IN_SPACE), "-7*((b.P.x - a.P.x)*(b.P.vx - a.P.vx) + (b.P.y - a.P.y)*(b.P.vy - a.P.vy) + (b.P.z - a.P.z)*(b.P.vz - a.P.vz))^2/((b.P.x - a.P.x)^2 + (b.P.y - a.P.y)^2 + (b.P.z - a.P.z)^2)");
+    assert_balance(
+        &pair("", "  e: { spring_damper: { between: [a.P, b.P], stiffness: 50, free_length: 0.4 } }", APART),
+        "0",
+    );
+    assert_balance(
+        &pair(
+            "",
+            "  e: { spring_damper: { between: [a.P, b.P], along: [3, 4], stiffness: 50, damping: 7, free_length: 0.4 } }",
+            APART,
+        ),
+        "-7*(0.6*(b.P.vx - a.P.vx) + 0.8*(b.P.vy - a.P.vy))^2",
+    );
+    assert_balance(
+        &spatial_pair(
+            "",
+            "  e: { spring_damper: { between: [a.P, b.P], stiffness: 50, damping: 7, free_length: 0.4 } }",
+            APART_IN_SPACE,
+        ),
+        "-7*((b.P.x - a.P.x)*(b.P.vx - a.P.vx) + (b.P.y - a.P.y)*(b.P.vy - a.P.vy) + (b.P.z - a.P.z)*(b.P.vz - a.P.vz))^2/((b.P.x - a.P.x)^2 + (b.P.y - a.P.y)^2 + (b.P.z - a.P.z)^2)",
+    );
 }
 
 /// A spring and damper without free length begins where its points meet: x = v/ω e^(−δt) sin ωt.

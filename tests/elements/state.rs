@@ -35,11 +35,7 @@ fn errors(simulation: &str) -> [f64; 3] {
         largest(bounds.times.iter().zip(curve(&bounds, name)).map(|(&t, value)| value - exact(t)))
     };
     let position = |t: f64| t * t / 2.0 - TAU * t + TAU * TAU * lag_at(t, TAU);
-    [
-        error("lag", &|t| lag_at(t, TAU)),
-        error("sine", &|t| 0.5 + 2.0 / 3.0 * (3.0 * t).sin()),
-        error("x", &position),
-    ]
+    [error("lag", &|t| lag_at(t, TAU)), error("sine", &|t| 0.5 + 2.0 / 3.0 * (3.0 * t).sin()), error("x", &position)]
 }
 
 #[test]
@@ -99,7 +95,9 @@ simulation: {{ duration: 4, output_step: 0.5, {simulation} }}
         (4, [0.30259351, 0.02998042, 0.01312915]),
         (8, [0.30193085, -0.00068935, 0.00217762]),
     ];
-    for (simulation, allowed) in [("step: 1e-3", 4e-6), ("tolerance: 1e-7", 1e-7), ("step: 1e-2, extrapolation: 3", 1e-7)] {
+    for (simulation, allowed) in
+        [("step: 1e-3", 4e-6), ("tolerance: 1e-7", 1e-7), ("step: 1e-2, extrapolation: 3", 1e-7)]
+    {
         let bounds = nominal(&read(&text(simulation)));
         assert_eq!(output(&bounds, "integral").unit, "m*s");
         for (row, values) in wanted {

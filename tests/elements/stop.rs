@@ -35,5 +35,12 @@ simulation: { duration: 1.2, step: 5e-5, output_step: 1e-4 }
 /// Pressed all the time.
 #[test]
 fn an_elastic_stop_stores_what_it_takes() {
-    assert_balance(&pair("  j: { revolute: [a.P, b.P] }", "  e: { stop: { on: j, lower: 2, impact: { stiffness: 5 } } }", "  j.angle: 0.3\n  j.angular_velocity: -0.8"), "0");
+    assert_balance(
+        &pair(
+            "  j: { revolute: [a.P, b.P] }",
+            "  e: { stop: { on: j, lower: 2, impact: { stiffness: 5 } } }",
+            "  j.angle: 0.3\n  j.angular_velocity: -0.8",
+        ),
+        "0",
+    );
 }

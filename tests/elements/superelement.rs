@@ -8,8 +8,7 @@ use mbint::results::Method;
 use crate::common::finite_elements::Beam;
 use crate::common::{Subject, band, curve, distance, largest, load, nominal, output, read, run};
 
-const STEEL: Beam =
-    Beam { length: 0.8, axial: 4e6, bending: [60.0, 90.0], torsional: 45.0, mass: 1.2, turning: 1e-4 };
+const STEEL: Beam = Beam { length: 0.8, axial: 4e6, bending: [60.0, 90.0], torsional: 45.0, mass: 1.2, turning: 1e-4 };
 
 /// The matrices of a beam between its ends, with `modes` modes.
 fn between_ends(beam: &Beam, modes: usize) -> String {
@@ -62,7 +61,11 @@ effects:
         let found = band(output(&bounds, name), Method::Chebyshev);
         let ends = [value / 0.8, value / 1.2];
         let [low, high] = [ends[0].min(ends[1]), ends[0].max(ends[1])];
-        assert!((curve(&bounds, name)[0] - value).abs() < 1e-4 * value.abs(), "{name}: {} {value}", curve(&bounds, name)[0]);
+        assert!(
+            (curve(&bounds, name)[0] - value).abs() < 1e-4 * value.abs(),
+            "{name}: {} {value}",
+            curve(&bounds, name)[0]
+        );
         assert!((found.lower[0] - low).abs() < 1e-4 * value.abs() + found.error.total[0], "{name}");
         assert!((found.upper[0] - high).abs() < 1e-4 * value.abs() + found.error.total[0], "{name}");
     }
@@ -173,15 +176,25 @@ simulation: {{ duration: 0.3, step: 1e-4, output_step: 0.01 }}
 #[test]
 fn the_strip_of_the_page_moves_like_a_beam() {
     let page = include_str!("../../docs/guides/flexible.md");
-    let [model, matrices] = [include_str!("../../docs/examples/flexible_arm.yaml"), include_str!("../../docs/examples/matrices/strip.yaml")];
+    let [model, matrices] = [
+        include_str!("../../docs/examples/flexible_arm.yaml"),
+        include_str!("../../docs/examples/matrices/strip.yaml"),
+    ];
     assert!(page.contains(model) && page.contains(matrices), "the page shows the example");
     let found = nominal(&load(&Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/examples/flexible_arm.yaml")));
     // E A = 2.1e11 · 6e-5, E I = 2.1e11 · 4.5e-11, μ = 7850 · 6e-5.
     let strip = "beam: { length: 0.6, mass_per_length: 0.471, axial_stiffness: 1.26e7, bending_stiffness: 9.45, damping: 1e-4, elements: 8 }";
     let lines = model.lines().filter(|line| !["  strip:", "  tip:"].iter().any(|key| line.starts_with(key)));
-    let text = lines.collect::<Vec<_>>().join("\n").replace("root: { mass: 0, inertia: 0 }", &format!("root: {{ {strip} }}\n  ball: {{ mass: load, inertia: 1e-5 }}"));
-    let text = text.replace("hub.rim, root]", "hub.rim, root.start]\n  glue: { fixed: [root.end, ball] }").replace("tip.", "ball.");
-    let text = text.replace("glue: { fixed: [root.end, ball] } }", "glue: { fixed: [root.end, ball] }").replace("root.start]\n", "root.start] }\n");
+    let text = lines.collect::<Vec<_>>().join("\n").replace(
+        "root: { mass: 0, inertia: 0 }",
+        &format!("root: {{ {strip} }}\n  ball: {{ mass: load, inertia: 1e-5 }}"),
+    );
+    let text = text
+        .replace("hub.rim, root]", "hub.rim, root.start]\n  glue: { fixed: [root.end, ball] }")
+        .replace("tip.", "ball.");
+    let text = text
+        .replace("glue: { fixed: [root.end, ball] } }", "glue: { fixed: [root.end, ball] }")
+        .replace("root.start]\n", "root.start] }\n");
     let beam = nominal(&read(&text));
     for (name, share) in [("angle", 2e-3), ("bent", 1e-2), ("height", 2e-3)] {
         let [beam, found] = [&beam, &found].map(|bounds| curve(bounds, name));
@@ -243,7 +256,8 @@ simulation: {{ duration: 0.2, step: 2e-4, output_step: 0.01 }}
 /// by 5 μ (a_A + a_B)/2 l⁴/384 EI of a beam on two pins.
 #[test]
 fn a_coupler_bends_under_its_own_inertia() {
-    let coupler = Beam { length: 0.5, axial: 1e6, bending: [1500.0, 1500.0], torsional: 10.0, mass: 1.0, turning: 1e-4 };
+    let coupler =
+        Beam { length: 0.5, axial: 1e6, bending: [1500.0, 1500.0], torsional: 10.0, mass: 1.0, turning: 1e-4 };
     let (radius, speed) = (0.1, 10.0);
     let crank = |bodies: &str, effects: &str, [start, middle, end]: [&str; 3]| {
         nominal(&read(&format!(

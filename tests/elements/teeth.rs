@@ -1,7 +1,7 @@
 //! Forces of teeth on bearings, against F_t = T/r, F_r = F_t tan α / cos β, F_a = F_t tan β and those of bevel gears.
 
-use mbint::results::Bounds;
 use mbint::Formulation;
+use mbint::results::Bounds;
 
 use crate::common::{curve, nominal, read};
 
@@ -30,7 +30,8 @@ fn degrees(angle: f64) -> f64 {
 /// A pinion of 40 mm drives a wheel of 100 mm against a brake, in a frame that lies askew; the second bearing may be
 /// listed backwards, and its axis may point the other way.
 fn helical(backwards: bool, against: bool, torque: f64, hand: f64) -> String {
-    let (pair, axis) = (if backwards { "[b, housing.B]" } else { "[housing.B, b]" }, if against { "[0, 0, -1]" } else { "z" });
+    let (pair, axis) =
+        (if backwards { "[b, housing.B]" } else { "[housing.B, b]" }, if against { "[0, 0, -1]" } else { "z" });
     // ψ̇₂ = −0.4 ψ̇₁ about the first axis.
     let sign = if backwards { -1.0 } else { 1.0 } * if against { -1.0 } else { 1.0 };
     let (ratio, brake) = (-0.4 * sign, sign * torque / 0.4);
@@ -248,7 +249,8 @@ simulation: { duration: 0.01, step: 1e-3, output_step: 0.01 }
     // The pitch cone's half angle is atan(1/2), the pinion's mean radius 100 mm sin δ.
     let delta = 0.5f64.atan();
     let transmitted = 10.0 / (0.1 * delta.sin());
-    let (across, along) = (transmitted * 0.36397023426620234 * delta.cos(), transmitted * 0.36397023426620234 * delta.sin());
+    let (across, along) =
+        (transmitted * 0.36397023426620234 * delta.cos(), transmitted * 0.36397023426620234 * delta.sin());
     // Teeth press the pinion away from the apex and towards its axis (−y); its bearing has the opposites. They touch at
     // +y of the pinion, whose teeth move along +z there.
     let expected =

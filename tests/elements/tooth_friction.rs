@@ -119,7 +119,8 @@ joints:
 /// Driven to and fro, gears lose power or none, and never gain any: energy in is energy there and energy lost.
 #[test]
 fn no_power_comes_from_teeth() {
-    let drive = "  drive: { torque: { on: one, value: 2*sin(30*t) } }\n  hold: { torque: { on: two, value: -20*two.angle } }";
+    let drive =
+        "  drive: { torque: { on: one, value: 2*sin(30*t) } }\n  hold: { torque: { on: two, value: -20*two.angle } }";
     let bounds = nominal(&read(&format!(
         "
 {GEARS}

@@ -1,8 +1,8 @@
 //! Torsional springs and dampers: the torsional pendulum, and MSC Adams.
 
-use crate::common::power::{APART, assert_balance, pair};
 use crate::common::adams::{Case, compared_with_adams};
 use crate::common::closed_forms::assert_converges;
+use crate::common::power::{APART, assert_balance, pair};
 use crate::common::read;
 
 #[test]
@@ -33,14 +33,21 @@ joints: { j: { revolute: [ground.O, a.P] } }
 effects: { s: { torsional_spring_damper: { on: j, stiffness: 200, damping: 10 } } }
 initial: { a.orientation: { axis: x, angle: -90 deg } }",
     at_one: [
-            1.994921, 0.0, -0.1424453, 0.7066577, -0.7066577, 0.02519702, 0.02519702, -0.1710964, 0.0, 7.811281, 0.0,
-            0.1201785, 0.0,
-        ],
+        1.994921, 0.0, -0.1424453, 0.7066577, -0.7066577, 0.02519702, 0.02519702, -0.1710964, 0.0, 7.811281, 0.0,
+        0.1201785, 0.0,
+    ],
 };
 
 compared_with_adams!(ADAMS);
 
 #[test]
 fn a_spring_stores_and_a_damper_takes() {
-    assert_balance(&pair("", "  e: { torsional_spring_damper: { between: [a, b], stiffness: 5, damping: 0.3, free_angle: 0.2 } }", APART), "-0.3*(b.angular_velocity - a.angular_velocity)^2");
+    assert_balance(
+        &pair(
+            "",
+            "  e: { torsional_spring_damper: { between: [a, b], stiffness: 5, damping: 0.3, free_angle: 0.2 } }",
+            APART,
+        ),
+        "-0.3*(b.angular_velocity - a.angular_velocity)^2",
+    );
 }

@@ -100,7 +100,9 @@ simulation: {{ duration: 1, output_step: 0.1, {simulation} }}
 "
         )
     };
-    for (simulation, allowed) in [("step: 1e-2", 1e-4), ("tolerance: 1e-6", 1e-6), ("scheme: explicit, tolerance: 1e-8", 1e-8)] {
+    for (simulation, allowed) in
+        [("step: 1e-2", 1e-4), ("tolerance: 1e-6", 1e-6), ("scheme: explicit, tolerance: 1e-8", 1e-8)]
+    {
         let bounds = nominal(&read(&text(simulation)));
         let speed = *curve(&bounds, "v").last().unwrap();
         assert!((speed - 0.04).abs() < allowed, "{simulation}: {speed}");
@@ -138,7 +140,8 @@ bounds: { chebyshev: { order: 3 }, taylor: { order: 3 }, scan: { points: 5 } }
 /// A trajectory through a hundred points, and a servo that follows it.
 #[test]
 fn a_servo_follows_a_hundred_points() {
-    let points: Vec<String> = (0..100).map(|i| format!("[{}, {} rad]", 0.02 * f64::from(i), (0.1 * f64::from(i)).sin())).collect();
+    let points: Vec<String> =
+        (0..100).map(|i| format!("[{}, {} rad]", 0.02 * f64::from(i), (0.1 * f64::from(i)).sin())).collect();
     let bounds = nominal(&read(&format!(
         "
 bodies: {{ wheel: {{ mass: 1, inertia: 0.02 }} }}

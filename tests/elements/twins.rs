@@ -6,8 +6,8 @@ use mbint::results::Bounds;
 use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 use proptest::prelude::*;
 
-use crate::common::{Subject, curve, nominal};
 use crate::common::registry::{Mechanism, OF_EFFECTS, OF_JOINTS, effects, joints};
+use crate::common::{Subject, curve, nominal};
 
 impl Mechanism {
     /// The model with these instances, of which all bodies are observed.
@@ -17,7 +17,8 @@ impl Mechanism {
         for (index, twin) in twins.iter().enumerate() {
             instances += &format!("  i{index}: {{ of: all{} }}\n", twin.keys(spatial));
             for body in self.bodies {
-                let letters: &[&str] = if spatial { &["x", "y", "z", "omega.x", "omega.y", "omega.z"] } else { &["x", "y", "angle"] };
+                let letters: &[&str] =
+                    if spatial { &["x", "y", "z", "omega.x", "omega.y", "omega.z"] } else { &["x", "y", "angle"] };
                 for letter in letters {
                     outputs += &format!("  i{index}.{body}.{letter}: i{index}.{body}.{letter}\n");
                 }
@@ -66,7 +67,8 @@ impl Twin {
 
     /// R D
     fn image(&self) -> Matrix3<f64> {
-        let turn = Rotation3::from_axis_angle(&Unit::new_normalize(Vector3::from(self.axis)), self.degrees.to_radians());
+        let turn =
+            Rotation3::from_axis_angle(&Unit::new_normalize(Vector3::from(self.axis)), self.degrees.to_radians());
         let signs = Vector3::from_fn(|axis, _| if self.mirror == Some(axis) { -1.0 } else { 1.0 });
         turn.matrix() * Matrix3::from_diagonal(&signs)
     }
@@ -92,14 +94,21 @@ fn compare(mechanism: &Mechanism, spatial: bool, bounds: &Bounds, index: usize, 
     let image = twin.image();
     let sign = image.determinant().signum();
     let rows = bounds.times.len();
-    let value = |instance: usize, body: &str, letter: &str, row: usize| curve(bounds, &format!("i{instance}.{body}.{letter}"))[row];
+    let value = |instance: usize, body: &str, letter: &str, row: usize| {
+        curve(bounds, &format!("i{instance}.{body}.{letter}"))[row]
+    };
     let close = |found: f64, wanted: f64, of: &str| {
-        assert!((found - wanted).abs() < 1e-7 * (1.0 + wanted.abs()), "{what}: {of} of twin {index} is {found}, not {wanted}");
+        assert!(
+            (found - wanted).abs() < 1e-7 * (1.0 + wanted.abs()),
+            "{what}: {of} of twin {index} is {found}, not {wanted}"
+        );
     };
     for row in 0..rows {
         for body in mechanism.bodies {
             let vector = |instance: usize, letters: [&str; 3]| {
-                Vector3::from_iterator(letters.map(|letter| if letter.is_empty() { 0.0 } else { value(instance, body, letter, row) }))
+                Vector3::from_iterator(
+                    letters.map(|letter| if letter.is_empty() { 0.0 } else { value(instance, body, letter, row) }),
+                )
             };
             let letters = ["x", "y", if spatial { "z" } else { "" }];
             let wanted = image * vector(0, letters) + Vector3::from(twin.moved);
@@ -130,9 +139,8 @@ fn twins_of(
     let what = format!("{} {}", example.0, if spatial { "in space" } else { "in the plane" });
     let mut chosen = twins.to_vec();
     for (_, words) in refused.iter().filter(|(keyword, _)| *keyword == example.0) {
-        let (kept, out): (Vec<_>, Vec<_>) = chosen
-            .into_iter()
-            .partition(|twin| mechanism.with_twins(spatial, example, &[ORIGINAL, *twin]).is_ok());
+        let (kept, out): (Vec<_>, Vec<_>) =
+            chosen.into_iter().partition(|twin| mechanism.with_twins(spatial, example, &[ORIGINAL, *twin]).is_ok());
         for twin in out {
             let message = mechanism.with_twins(spatial, example, &[twin]).err().unwrap_or_default();
             assert!(message.contains(words), "{what}: {message}");

@@ -93,7 +93,9 @@ fn a_slalom_is_that_of_scipy() {
         (2.0, [46.188923, 11.4432092, 0.795682995, 19.0063541, 12.7328613, 0.333927636]),
         (4.0, [82.9594307, 35.8804418, 0.609883838, 18.4645454, 11.1944913, 0.612446185]),
     ];
-    for (simulation, allowed) in [("duration: 4, step: 5e-4", 1e-4), ("duration: 4, scheme: explicit, tolerance: 1e-8", 1e-6)] {
+    for (simulation, allowed) in
+        [("duration: 4, step: 5e-4", 1e-4), ("duration: 4, scheme: explicit, tolerance: 1e-8", 1e-6)]
+    {
         let bounds = nominal(&read(&car("shape: 1.3, curvature: -0.7", "0.12*sin(2*t)", simulation)));
         for (time, values) in wanted {
             for (name, value) in ["x", "y", "angle", "vx", "vy", "w"].into_iter().zip(values) {

@@ -39,5 +39,12 @@ fn a_universal_joint_turns_unevenly() {
 
 #[test]
 fn its_reactions_do_no_work() {
-    assert_balance(&spatial_pair("  j: { universal: [a.P, b.P] }", "  spring: { spring_damper: { between: [ground.O, b], stiffness: 30, free_length: 0.2 } }", "  b.vx: 0.2"), "0");
+    assert_balance(
+        &spatial_pair(
+            "  j: { universal: [a.P, b.P] }",
+            "  spring: { spring_damper: { between: [ground.O, b], stiffness: 30, free_length: 0.2 } }",
+            "  b.vx: 0.2",
+        ),
+        "0",
+    );
 }

@@ -44,8 +44,7 @@ const MOST_DEFECT: f64 = 1e-9;
 /// The lowest order of a scheme in all formulations; `None` where errors are rounding's with steps of any length.
 fn order(found: &Verification, scheme: usize) -> Option<f64> {
     let all = |own: &FormulationVerification| own.schemes[scheme].convergence.clone();
-    let orders: Vec<f64> =
-        found.formulations.iter().flat_map(all).filter_map(|own: Convergence| own.order).collect();
+    let orders: Vec<f64> = found.formulations.iter().flat_map(all).filter_map(|own: Convergence| own.order).collect();
     orders.into_iter().reduce(f64::min)
 }
 
@@ -83,14 +82,21 @@ fn row(mechanism: &Mechanism, spatial: bool, keyword: &str, example: &str) -> Op
     let derivatives = checks.map(|check| check.difference).fold(0.0, f64::max);
     let energy = energy(&found);
     // Orders of theory are 2, 4 and 8; the explicit method's shows where rounding does not come first.
-    let noted = SCHEMES.into_iter().enumerate().fold(case, |case, (scheme, (name, least))| match order(&found, scheme) {
-        Some(order) => case.at_least(name, order, least),
-        None => case.text(name, "exact"),
-    });
-    noted.at_most("derivatives", derivatives, MOST_DEFECT).at_most("power", defect, MOST_DEFECT).text("energy", energy).note();
+    let noted =
+        SCHEMES.into_iter().enumerate().fold(case, |case, (scheme, (name, least))| match order(&found, scheme) {
+            Some(order) => case.at_least(name, order, least),
+            None => case.text(name, "exact"),
+        });
+    noted
+        .at_most("derivatives", derivatives, MOST_DEFECT)
+        .at_most("power", defect, MOST_DEFECT)
+        .text("energy", energy)
+        .note();
     let [hht, extrapolated, explicit] =
         [0, 1, 2].map(|scheme| order(&found, scheme).map_or("exact".to_owned(), |order| format!("{order:.2}")));
-    Some(Ok(format!("| `{keyword}` | {space} | {hht} | {extrapolated} | {explicit} | {derivatives:.0e} | {defect:.0e} | {energy} |\n")))
+    Some(Ok(format!(
+        "| `{keyword}` | {space} | {hht} | {extrapolated} | {explicit} | {derivatives:.0e} | {defect:.0e} | {energy} |\n"
+    )))
 }
 
 #[test]

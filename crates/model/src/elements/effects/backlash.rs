@@ -16,10 +16,10 @@ use symdiff::{Binary, Formula};
 
 use super::laws::positive_part::PositivePart;
 use super::{ForceElement, Forces, TypedSensor};
-use crate::grammar::quantity::Dimension;
-use crate::grammar::{JointCoordinate, Sensor, OnJoint, TimeOrder, Rotating};
-use crate::multibody::BuildError;
 use crate::elements::tuning::TUNING;
+use crate::grammar::quantity::Dimension;
+use crate::grammar::{JointCoordinate, OnJoint, Rotating, Sensor, TimeOrder};
+use crate::multibody::BuildError;
 
 /// A gear pair whose teeth have play.
 #[derive(Clone, Debug, Element)]

@@ -24,11 +24,13 @@ use symdiff::{Binary, Formula};
 use super::laws::positive_part::{PositivePart, clipped};
 use super::{ForceElement, Forces, TypedSensor};
 use crate::elements::Glyph;
-use crate::grammar::quantity::Dimension;
-use crate::grammar::{Checked, Fields, JointCoordinate, Sensor, OnJoint, PointRef, Reader, SymbolTable, TimeOrder, Rotating};
-use crate::syntax::codes::Code;
-use crate::multibody::BuildError;
 use crate::elements::tuning::TUNING;
+use crate::grammar::quantity::Dimension;
+use crate::grammar::{
+    Checked, Fields, JointCoordinate, OnJoint, PointRef, Reader, Rotating, Sensor, SymbolTable, TimeOrder,
+};
+use crate::multibody::BuildError;
+use crate::syntax::codes::Code;
 
 /// An endless belt or chain between two pulleys, without slip.
 #[derive(Clone, Debug, Element)]
@@ -120,8 +122,9 @@ impl ForceElement for Belt {
             Run::Open => -radius[1],
             Run::Crossed => radius[1],
         };
-        let [first, second] =
-            self.between.map(|pulley| [TimeOrder::Position, TimeOrder::Velocity].map(|order| forces.angle(pulley, order)));
+        let [first, second] = self
+            .between
+            .map(|pulley| [TimeOrder::Position, TimeOrder::Velocity].map(|order| forces.angle(pulley, order)));
         let shift = radius[0] * first[0] + opposite * (second[0] - forces.value(&self.offset)?);
         let rate = radius[0] * first[1] + opposite * second[1];
 
@@ -159,10 +162,8 @@ impl ForceElement for Belt {
         }
         let coefficients = [stiffness, preload, corner, radius[0], radius[1]];
         forces.potential(&coefficients, (first_energy + second_energy).only_where(taut));
-        forces.sensors([
-            (Self::FIRST_TENSION, first.only_where(taut)),
-            (Self::SECOND_TENSION, second.only_where(taut)),
-        ]);
+        forces
+            .sensors([(Self::FIRST_TENSION, first.only_where(taut)), (Self::SECOND_TENSION, second.only_where(taut))]);
         Ok(())
     }
 }

@@ -66,12 +66,10 @@ impl ForceElement for Bushing {
     const SENSORS: &'static [TypedSensor] = &[];
 
     fn apply<'g>(&self, forces: &mut dyn Forces<'g>) -> Result<(), BuildError> {
-        let stiffness =
-            Law::of(forces, [&self.stiffness, &self.torsional_stiffness], self.stiffness_matrix.as_ref())?;
+        let stiffness = Law::of(forces, [&self.stiffness, &self.torsional_stiffness], self.stiffness_matrix.as_ref())?;
         let damping = Law::of(forces, [&self.damping, &self.torsional_damping], self.damping_matrix.as_ref())?;
         let pair = forces.pair(self.between);
-        let axes: [Vector; 3] =
-            std::array::from_fn(|axis| pair.outward(Vector::along(forces.graph(), axis)));
+        let axes: [Vector; 3] = std::array::from_fn(|axis| pair.outward(Vector::along(forces.graph(), axis)));
         // Into the first frame.
         let inward = Matrix::from(axes);
         let (first, second) = (pair.first.point, pair.second.point);
@@ -176,12 +174,7 @@ pub struct SixBySix(pub Box<[[Formula; 6]; 6]>);
 impl Value for SixBySix {
     const IMAGE: Image = Image::SixRows;
 
-    fn read<S: SymbolTable>(
-        reader: &mut Reader<'_, S>,
-        node: &Node,
-        _: Span,
-        quantity: &Quantity,
-    ) -> Option<Self> {
+    fn read<S: SymbolTable>(reader: &mut Reader<'_, S>, node: &Node, _: Span, quantity: &Quantity) -> Option<Self> {
         // Force by displacement, force by rotation and torque by displacement, torque by rotation.
         let straight = quantity.dimension();
         let mixed = straight.times(Dimension::LENGTH);

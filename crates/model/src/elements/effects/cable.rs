@@ -14,10 +14,10 @@ use symdiff::{Binary, Formula};
 use super::laws::positive_part::{PositivePart, clipped};
 use super::{ForceElement, Forces, TypedSensor};
 use crate::elements::Glyph;
-use crate::grammar::quantity::Dimension;
-use crate::grammar::{Sensor, PointRef};
-use crate::multibody::BuildError;
 use crate::elements::tuning::TUNING;
+use crate::grammar::quantity::Dimension;
+use crate::grammar::{PointRef, Sensor};
+use crate::multibody::BuildError;
 
 /// A cable: it pulls, and does not push.
 #[derive(Clone, Debug, Element)]
@@ -78,7 +78,12 @@ impl ForceElement for Cable {
         let tension = tension.only_where(tight);
         let potential = (stiffness * taut.integral).only_where(tight);
         forces.potential(&[stiffness, free, corner], potential);
-        forces.sensors([(Sensor::LENGTH, length), (Sensor::RATE, rate), (Sensor::FORCE, tension), (Sensor::AXIAL, tension)]);
+        forces.sensors([
+            (Sensor::LENGTH, length),
+            (Sensor::RATE, rate),
+            (Sensor::FORCE, tension),
+            (Sensor::AXIAL, tension),
+        ]);
         Ok(())
     }
 }

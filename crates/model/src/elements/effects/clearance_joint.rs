@@ -11,9 +11,9 @@
 use mbint_derive::Element;
 use symdiff::{Binary, Formula};
 
+use super::contact::felt::SENSORS;
 use super::contact::touch::{self, ContactLaw};
 use super::laws::impact::Push;
-use super::contact::felt::SENSORS;
 use super::{ForceElement, Forces, Friction, Impact, TypedSensor};
 use crate::elements::{Form, Glyph, Shape, SurfaceAt, Surroundings};
 use crate::grammar::{Axis, PointRef};

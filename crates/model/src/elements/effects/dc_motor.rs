@@ -77,7 +77,10 @@ impl ForceElement for DcMotor {
     }
 
     fn states(&self) -> Vec<StateVariable<'_>> {
-        self.inductance.iter().map(|_| StateVariable { sensor: CURRENT, initial: &self.initial, period: None }).collect()
+        self.inductance
+            .iter()
+            .map(|_| StateVariable { sensor: CURRENT, initial: &self.initial, period: None })
+            .collect()
     }
 
     fn apply<'g>(&self, forces: &mut dyn Forces<'g>) -> Result<(), BuildError> {

@@ -15,11 +15,11 @@ use schemars::{JsonSchema, Schema, SchemaGenerator};
 use symdiff::{Binary, Formula};
 
 use super::{Filter, ForceElement, Forces, StateVariable, TypedSensor};
+use crate::elements::tuning::TUNING;
 use crate::grammar::quantity::Dimension;
 use crate::grammar::values::Number;
 use crate::grammar::{Context, Element, Fields, Group, Key, Node, Reader, SymbolTable};
 use crate::multibody::BuildError;
-use crate::elements::tuning::TUNING;
 
 /// A number as it was some time ago.
 #[derive(Clone, Debug)]
@@ -98,7 +98,9 @@ impl Group for Delay {
             },
             default_in_words: None,
             schema: match name {
-                "order" => schemars::json_schema!({ "type": "integer", "minimum": 1, "maximum": TUNING.most_order_of_delay }),
+                "order" => {
+                    schemars::json_schema!({ "type": "integer", "minimum": 1, "maximum": TUNING.most_order_of_delay })
+                }
                 _ => generator.subschema_for::<Number>(),
             },
             requirement: None,

@@ -10,11 +10,11 @@ use mbint_derive::Element;
 use symdiff::Formula;
 
 use super::{ForceElement, Forces, TypedSensor};
-use crate::grammar::quantity::Dimension;
-use crate::grammar::{Checked, Components, Fields, Sensor, PointRef, Reader, SymbolTable};
-use crate::syntax::codes::Code;
-use crate::multibody::BuildError;
 use crate::elements::tuning::TUNING;
+use crate::grammar::quantity::Dimension;
+use crate::grammar::{Checked, Components, Fields, PointRef, Reader, Sensor, SymbolTable};
+use crate::multibody::BuildError;
+use crate::syntax::codes::Code;
 
 /// Resistance of a fluid.
 #[derive(Clone, Debug, Element)]

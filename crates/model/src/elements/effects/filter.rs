@@ -220,8 +220,7 @@ impl Group for Filter {
 
     fn read<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: &Fields<'_>, _units: usize) -> Option<Self> {
         let input = reader.required(fields, "input").and_then(|node| reader.any_unit(node, Context::Effect));
-        let [numerator, denominator] =
-            ["numerator", "denominator"].map(|key| Coefficients::read(reader, fields, key));
+        let [numerator, denominator] = ["numerator", "denominator"].map(|key| Coefficients::read(reader, fields, key));
         let (numerator, denominator) = (numerator?, denominator?);
         check_order(reader, fields, [numerator.formulas.len(), denominator.formulas.len()])?;
         let nodes = list(fields.get("denominator"));
@@ -288,7 +287,11 @@ fn check_order<S: SymbolTable>(
     [above, below]: [usize; 2],
 ) -> Option<()> {
     let (key, message, help) = if below < 2 {
-        ("denominator", "a denominator has two coefficients or more".to_owned(), "a factor belongs in formulas, it needs no filter")
+        (
+            "denominator",
+            "a denominator has two coefficients or more".to_owned(),
+            "a factor belongs in formulas, it needs no filter",
+        )
     } else if below > STAGES.len() + 1 {
         let help = "put several filters in a row: the input of one is the output of another";
         ("denominator", format!("a denominator has {} coefficients or fewer, not {below}", STAGES.len() + 1), help)
@@ -298,7 +301,12 @@ fn check_order<S: SymbolTable>(
     } else {
         return Some(());
     };
-    reader.error(Code::BadFilter, fields.get(key).map_or_else(|| fields.at.clone(), |node| node.span.clone()), message, help.to_owned());
+    reader.error(
+        Code::BadFilter,
+        fields.get(key).map_or_else(|| fields.at.clone(), |node| node.span.clone()),
+        message,
+        help.to_owned(),
+    );
     None
 }
 
@@ -308,7 +316,8 @@ impl Element for Filter {
     const DESCRIPTION: &'static str = "A linear law from an input to an output, by numerator and denominator.";
     const EQUATIONS: &'static [&'static str] = &["(aₙ sⁿ + … + a₀) y = (bₙ sⁿ + … + b₀) u,  s = d/dt"];
     const SOURCE: &'static str = "Kailath, Linear Systems (1980), sec. 2.1";
-    const EXAMPLE: &'static str = "{ input: arm.angle, numerator: [1], denominator: [0.01 s^2, 0.14 s, 1], initial: 0.3 rad }";
+    const EXAMPLE: &'static str =
+        "{ input: arm.angle, numerator: [1], denominator: [0.01 s^2, 0.14 s, 1], initial: 0.3 rad }";
     const SHORT: Option<&'static str> = None;
 }
 

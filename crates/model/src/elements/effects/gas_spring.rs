@@ -23,8 +23,10 @@ use crate::multibody::BuildError;
 /// p, absolute.
 const PRESSURE: Sensor = Sensor::of_motion("pressure");
 
-const ABOVE_ONE: Requirement =
-    Requirement { holds: |value| value > 1.0, message: "must be above 1 (leave it out for gas at a constant temperature)" };
+const ABOVE_ONE: Requirement = Requirement {
+    holds: |value| value > 1.0,
+    message: "must be above 1 (leave it out for gas at a constant temperature)",
+};
 
 /// Gas behind a piston.
 #[derive(Clone, Debug, Element)]

@@ -19,14 +19,14 @@ use symdiff::{Formula, Scalar};
 
 use super::laws::dry_friction::Resistance;
 use super::{DryFriction, ForceElement, Forces, TypedSensor};
+use crate::elements::tuning::TUNING;
 use crate::grammar::mentions::NameKind;
 use crate::grammar::quantity::Dimension;
 use crate::grammar::{
-    Checked, Fields, FrictionMode, Group, JointCoordinate, Key, Sensor, Node, OnJoint, Reader, Reference, SymbolTable,
+    Checked, Fields, FrictionMode, Group, JointCoordinate, Key, Node, OnJoint, Reader, Reference, Sensor, SymbolTable,
 };
-use crate::syntax::codes::Code;
 use crate::multibody::{BuildError, Vector};
-use crate::elements::tuning::TUNING;
+use crate::syntax::codes::Code;
 
 /// Friction in a revolute, prismatic or cylindrical joint, proportional to the joint's reaction.
 #[derive(Clone, Debug, Element)]
@@ -74,11 +74,8 @@ pub struct FrictionJoint {
 
 impl ForceElement for JointFriction {
     const RESISTS: bool = true;
-    const SENSORS: &'static [TypedSensor] = &[
-        (Sensor::LOAD, Dimension::FORCE),
-        (Sensor::FORCE, Dimension::FORCE),
-        (Sensor::TORQUE, Dimension::TORQUE),
-    ];
+    const SENSORS: &'static [TypedSensor] =
+        &[(Sensor::LOAD, Dimension::FORCE), (Sensor::FORCE, Dimension::FORCE), (Sensor::TORQUE, Dimension::TORQUE)];
 
     fn sensors(&self) -> Vec<TypedSensor> {
         let measured = |measure: Sensor| match self.on.mode {

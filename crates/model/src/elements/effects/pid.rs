@@ -102,7 +102,8 @@ impl ForceElement for Pid {
 
     fn states(&self) -> Vec<StateVariable<'_>> {
         let integral = StateVariable { sensor: INTEGRAL, initial: &self.initial, period: None };
-        let filtered = self.filter.iter().map(|_| StateVariable { sensor: FILTERED_RATE, initial: &ZERO, period: None });
+        let filtered =
+            self.filter.iter().map(|_| StateVariable { sensor: FILTERED_RATE, initial: &ZERO, period: None });
         [integral].into_iter().chain(filtered).collect()
     }
 

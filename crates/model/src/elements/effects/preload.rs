@@ -13,8 +13,8 @@ use symdiff::Formula;
 use super::{ForceElement, Forces, TypedSensor};
 use crate::grammar::quantity::Dimension;
 use crate::grammar::{Checked, Fields, OnJoint, PointRef, Reader, Sensor, SymbolTable, TimeOrder};
-use crate::syntax::codes::Code;
 use crate::multibody::BuildError;
+use crate::syntax::codes::Code;
 
 /// A constant tension between two points, or a constant force or torque of a joint.
 #[derive(Clone, Debug, Element)]
@@ -78,7 +78,12 @@ impl Checked for Preload {
                 reader.required(fields, "between");
             }
             [Some(_), Some(_)] => {
-                reader.error(Code::ExclusiveKeys, fields.key_span("between"), "`on` and `between` exclude each other", None);
+                reader.error(
+                    Code::ExclusiveKeys,
+                    fields.key_span("between"),
+                    "`on` and `between` exclude each other",
+                    None,
+                );
             }
             _ => {}
         }

@@ -19,8 +19,8 @@ use super::{ForceElement, Forces, StateVariable, TypedSensor};
 use crate::grammar::quantity::Dimension;
 use crate::grammar::values::Number;
 use crate::grammar::{Context, Element, Fields, Group, Key, Node, Reader, SymbolTable};
-use crate::syntax::codes::Code;
 use crate::multibody::BuildError;
+use crate::syntax::codes::Code;
 
 /// A number that follows another within limits.
 #[derive(Clone, Debug)]
@@ -108,7 +108,12 @@ impl Group for RateLimit {
             ["rate", "lower", "upper", "initial"].map(|key| constant(reader, fields, key, false));
         if fields.get("rate").is_none() && fields.get("lower").is_none() && fields.get("upper").is_none() {
             let message = "a rate limit needs `rate`, or `lower` and `upper`";
-            reader.error(Code::IncompleteElement, fields.at.clone(), message, "without, it would be a `filter`".to_owned());
+            reader.error(
+                Code::IncompleteElement,
+                fields.at.clone(),
+                message,
+                "without, it would be a `filter`".to_owned(),
+            );
             return None;
         }
         for (key, other) in [("lower", "upper"), ("upper", "lower")] {

@@ -74,9 +74,19 @@ impl Group for Sampled {
             keys: Vec::new(),
         };
         vec![
-            key("input", "A formula of t, parameters, positions, velocities and states, its own name among them.", "", true),
+            key(
+                "input",
+                "A formula of t, parameters, positions, velocities and states, its own name among them.",
+                "",
+                true,
+            ),
             key("period", "Time from one instant to the next, the same for all samples.", "s", true),
-            key("initial", "Its value before the start, a formula of parameters, where `input` refers to it.", "", false),
+            key(
+                "initial",
+                "Its value before the start, a formula of parameters, where `input` refers to it.",
+                "",
+                false,
+            ),
         ]
     }
 
@@ -106,7 +116,8 @@ impl Group for Sampled {
 impl Element for Sampled {
     const KEYWORD: &'static str = "sampled";
     const WHAT: &'static str = "a sampled number";
-    const DESCRIPTION: &'static str = "A number that is computed at instants and held in between, as by a digital controller.";
+    const DESCRIPTION: &'static str =
+        "A number that is computed at instants and held in between, as by a digital controller.";
     const EQUATIONS: &'static [&'static str] = &["y = input(k period) for k period ≤ t < (k + 1) period"];
     const SOURCE: &'static str = "Åström & Wittenmark, Computer-Controlled Systems, 3rd ed. (1997), ch. 2";
     const EXAMPLE: &'static str = "{ input: arm.angle - 0.1*sin(2*t), period: 20 ms }";

@@ -20,11 +20,11 @@ use symdiff::{Formula, Scalar};
 
 use super::{ForceElement, Forces, TypedSensor};
 use crate::elements::Glyph;
-use crate::grammar::quantity::Dimension;
-use crate::grammar::{Checked, Direction, Fields, Sensor, PointRef, Reader, SymbolTable};
-use crate::syntax::codes::Code;
-use crate::multibody::{BuildError, Vector};
 use crate::elements::tuning::TUNING;
+use crate::grammar::quantity::Dimension;
+use crate::grammar::{Checked, Direction, Fields, PointRef, Reader, Sensor, SymbolTable};
+use crate::multibody::{BuildError, Vector};
+use crate::syntax::codes::Code;
 
 /// A spring and damper between two points.
 #[derive(Clone, Debug, Element)]
@@ -91,7 +91,12 @@ impl ForceElement for SpringDamper {
         if self.force.is_none() {
             forces.potential(&[spring.stiffness, spring.free_length], potential);
         }
-        forces.sensors([(Sensor::LENGTH, length), (Sensor::RATE, rate), (Sensor::FORCE, tension), (Sensor::AXIAL, tension)]);
+        forces.sensors([
+            (Sensor::LENGTH, length),
+            (Sensor::RATE, rate),
+            (Sensor::FORCE, tension),
+            (Sensor::AXIAL, tension),
+        ]);
         Ok(())
     }
 }
@@ -150,7 +155,12 @@ fn along_axis<'g>(line: Vector<'g>, growth: Vector<'g>, axis: Vector<'g>, spring
 impl Checked for SpringDamper {
     fn check_keys<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: &Fields<'_>) {
         if fields.lacks_all(&["stiffness", "damping", "force"]) {
-            reader.error(Code::IncompleteElement, fields.at.clone(), "a spring and damper needs `stiffness` or `damping`", None);
+            reader.error(
+                Code::IncompleteElement,
+                fields.at.clone(),
+                "a spring and damper needs `stiffness` or `damping`",
+                None,
+            );
         }
     }
 }

@@ -82,7 +82,11 @@ impl Group for State {
             keys: Vec::new(),
         };
         vec![
-            key("rate", "How fast it changes: a formula of t, parameters, positions, velocities and states, in its unit over s.", true),
+            key(
+                "rate",
+                "How fast it changes: a formula of t, parameters, positions, velocities and states, in its unit over s.",
+                true,
+            ),
             key("initial", "Its value at the start, a formula of parameters; its unit is that of the state.", false),
         ]
     }

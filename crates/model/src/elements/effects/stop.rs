@@ -12,9 +12,9 @@ use symdiff::{Formula, Scalar};
 use super::laws::impact::Push;
 use super::{ForceElement, Forces, Impact, TypedSensor, effort};
 use crate::grammar::quantity::Dimension;
-use crate::grammar::{Checked, Fields, Sensor, OnJoint, Reader, SymbolTable};
-use crate::syntax::codes::Code;
+use crate::grammar::{Checked, Fields, OnJoint, Reader, Sensor, SymbolTable};
 use crate::multibody::BuildError;
+use crate::syntax::codes::Code;
 
 /// Stops at the ends of a joint's range.
 #[derive(Clone, Debug, Element)]

@@ -19,14 +19,14 @@ use symdiff::{Formula, Scalar};
 use super::laws::dry_friction::Resistance;
 use super::{DryFriction, ForceElement, Forces, TypedSensor};
 use crate::elements::meshing::{Flanks, Meshing, Rim};
+use crate::elements::tuning::TUNING;
 use crate::grammar::mentions::NameKind;
 use crate::grammar::quantity::Dimension;
 use crate::grammar::{
     Checked, Fields, Group, JointCoordinate, Key, MeshKind, Node, Reader, Reference, Requirement, Sensor, SymbolTable,
 };
-use crate::syntax::codes::Code;
 use crate::multibody::BuildError;
-use crate::elements::tuning::TUNING;
+use crate::syntax::codes::Code;
 
 const SHARE: Requirement =
     Requirement { holds: |value| value > 0.0 && value <= 1.0, message: "must be above 0 and at most 1" };

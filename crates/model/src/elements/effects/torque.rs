@@ -15,7 +15,10 @@ use symdiff::Formula;
 use super::force::ForceFrame;
 use super::{ForceElement, Forces, TypedSensor};
 use crate::elements::Glyph;
-use crate::grammar::{BodyRef, Checked, Fields, Image, JointCoordinate, Node, OnJoint, Quantity, Reader, Reference, Span, SymbolTable, Value, plane, values};
+use crate::grammar::{
+    BodyRef, Checked, Fields, Image, JointCoordinate, Node, OnJoint, Quantity, Reader, Reference, Span, SymbolTable,
+    Value, plane, values,
+};
 use crate::multibody::BuildError;
 use crate::syntax::codes::Code;
 use crate::syntax::yaml;
@@ -88,8 +91,9 @@ impl Checked for Torque {
         match self.on {
             TorqueOn::Joint(_) => {
                 for key in ["from", "frame"].into_iter().filter(|key| fields.get(key).is_some()) {
-                    let message =
-                        format!("a torque at a joint has no `{key}`: it acts about the joint's axis, between its bodies");
+                    let message = format!(
+                        "a torque at a joint has no `{key}`: it acts about the joint's axis, between its bodies"
+                    );
                     reader.error(Code::MisplacedKey, fields.key_span(key), message, None);
                 }
                 if let Some(node) = fields.get("value").filter(|node| matches!(node.value, yaml::Value::Sequence(_))) {
@@ -134,12 +138,7 @@ pub struct AboutAxes(pub [Formula; 3]);
 impl Value for AboutAxes {
     const IMAGE: Image = Image::Axial;
 
-    fn read<S: SymbolTable>(
-        reader: &mut Reader<'_, S>,
-        node: &Node,
-        _: Span,
-        quantity: &Quantity,
-    ) -> Option<Self> {
+    fn read<S: SymbolTable>(reader: &mut Reader<'_, S>, node: &Node, _: Span, quantity: &Quantity) -> Option<Self> {
         if matches!(node.value, yaml::Value::Sequence(_)) {
             if !reader.model.is_spatial() && plane::leaves_plane_about(node) {
                 reader.leaves_the_plane(node);

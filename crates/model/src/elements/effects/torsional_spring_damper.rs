@@ -14,9 +14,11 @@ use symdiff::Formula;
 use super::{ForceElement, Forces, TypedSensor};
 use crate::elements::Glyph;
 use crate::grammar::quantity::Dimension;
-use crate::grammar::{BodyRef, Checked, Fields, JointCoordinate, Sensor, OnJoint, Reader, SymbolTable, TimeOrder, Rotating, RotatingJoint};
-use crate::syntax::codes::Code;
+use crate::grammar::{
+    BodyRef, Checked, Fields, JointCoordinate, OnJoint, Reader, Rotating, RotatingJoint, Sensor, SymbolTable, TimeOrder,
+};
 use crate::multibody::BuildError;
+use crate::syntax::codes::Code;
 
 /// A spring and damper between the angles of two bodies, or on the angle of a joint.
 #[derive(Clone, Debug, Element)]
@@ -67,8 +69,9 @@ impl ForceElement for TorsionalSpringDamper {
         let free_angle = forces.value(&self.free_angle)?;
         let bodies = self.between.map(|bodies| bodies.map(|body| body.0));
         let [angle, rate] = match (bodies, self.on) {
-            (Some([first, second]), None) => [TimeOrder::Position, TimeOrder::Velocity]
-                .map(|order| forces.angle(Rotating::of_body(second), order) - forces.angle(Rotating::of_body(first), order)),
+            (Some([first, second]), None) => [TimeOrder::Position, TimeOrder::Velocity].map(|order| {
+                forces.angle(Rotating::of_body(second), order) - forces.angle(Rotating::of_body(first), order)
+            }),
             (_, Some(joint)) => forces.coordinate_and_rate(OnJoint::angle(joint.0)),
             (None, None) => return Ok(()),
         };
@@ -101,7 +104,12 @@ impl Checked for TorsionalSpringDamper {
         }
         reader.exclude(fields, ["on", "between"]);
         if fields.lacks_all(&["stiffness", "damping", "torque"]) {
-            reader.error(Code::IncompleteElement, fields.at.clone(), "a spring and damper needs `stiffness` or `damping`", None);
+            reader.error(
+                Code::IncompleteElement,
+                fields.at.clone(),
+                "a spring and damper needs `stiffness` or `damping`",
+                None,
+            );
         }
     }
 

@@ -22,12 +22,12 @@ use symdiff::{Binary, Formula, Scalar};
 
 use super::laws::saturation::saturated;
 use super::{ForceElement, Forces, Scope, TypedSensor};
+use crate::elements::tuning::TUNING;
 use crate::elements::{Form, Glyph, Shape, SurfaceAt, Surroundings};
 use crate::grammar::quantity::Dimension;
 use crate::grammar::{BodyRef, Checked, Fields, PointRef, Reader, Sensor, SymbolTable};
-use crate::syntax::codes::Code;
 use crate::multibody::{BuildError, MaterialPoint, Vector};
-use crate::elements::tuning::TUNING;
+use crate::syntax::codes::Code;
 
 /// α.
 const SLIP_ANGLE: Sensor = Sensor::of_motion("slip_angle");
@@ -220,7 +220,12 @@ impl Checked for Tyre {
         }
         for key in ["radius", "slip_stiffness", "friction_along"].into_iter().filter(|key| has(key)) {
             if fields.lacks("wheel") {
-                reader.error(Code::MisplacedKey, fields.key_span(key), format!("`{key}` goes with `wheel`, the body that rolls"), None);
+                reader.error(
+                    Code::MisplacedKey,
+                    fields.key_span(key),
+                    format!("`{key}` goes with `wheel`, the body that rolls"),
+                    None,
+                );
                 return;
             }
         }
@@ -230,8 +235,14 @@ impl Checked for Tyre {
             }
             if !reader.model.is_spatial() {
                 for key in ["cornering_stiffness", "steer"].into_iter().filter(|key| has(key)) {
-                    let help = "seen from the side a tyre has forces along the ground alone; in space it has both".to_owned();
-                    reader.error(Code::MisplacedKey, fields.key_span(key), format!("with a `wheel` in the plane there is no `{key}`"), help);
+                    let help =
+                        "seen from the side a tyre has forces along the ground alone; in space it has both".to_owned();
+                    reader.error(
+                        Code::MisplacedKey,
+                        fields.key_span(key),
+                        format!("with a `wheel` in the plane there is no `{key}`"),
+                        help,
+                    );
                 }
             }
         } else {

@@ -11,7 +11,6 @@
 use mbint_derive::Element;
 use symdiff::Formula;
 
-
 use crate::grammar::{Axis, PointRef};
 
 use super::rows::Frames;
@@ -40,8 +39,16 @@ impl JointElement for Cylindrical {
     const SPATIAL: bool = true;
     const TURNS: bool = true;
     const ROWS: &'static [RowDocs] = &[
-        RowDocs { name: "normal_1, normal_2", unit: "m", multiplier: "N: −λ is the force on the second body at B along a normal of the line" },
-        RowDocs { name: "tilt_1, tilt_2", unit: "rad", multiplier: "N m: −λ is the torque on the second body across the axis" },
+        RowDocs {
+            name: "normal_1, normal_2",
+            unit: "m",
+            multiplier: "N: −λ is the force on the second body at B along a normal of the line",
+        },
+        RowDocs {
+            name: "tilt_1, tilt_2",
+            unit: "rad",
+            multiplier: "N m: −λ is the torque on the second body across the axis",
+        },
     ];
 }
 

@@ -12,7 +12,7 @@ use mbint_derive::Element;
 use symdiff::Formula;
 
 use crate::elements::Glyph;
-use crate::grammar::{PointRef};
+use crate::grammar::PointRef;
 
 use crate::multibody::Vector;
 
@@ -36,9 +36,7 @@ pub struct Distance {
 }
 
 impl JointElement for Distance {
-    const ROWS: &'static [RowDocs] = &[
-        RowDocs { name: "", unit: "m", multiplier: "N: the rod's tension" },
-    ];
+    const ROWS: &'static [RowDocs] = &[RowDocs { name: "", unit: "m", multiplier: "N: the rod's tension" }];
 }
 
 impl Joint for Distance {

@@ -13,9 +13,9 @@ use std::borrow::Cow;
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use symdiff::Formula;
 
-use crate::grammar::{Context, Element, Fields, Group, Key, Node, Reader, Symbol, Span, SymbolTable};
-use crate::syntax::codes::Code;
+use crate::grammar::{Context, Element, Fields, Group, Key, Node, Reader, Span, Symbol, SymbolTable};
 use crate::multibody::Vector;
+use crate::syntax::codes::Code;
 
 use super::{Joint, JointElement, Kinematics, Row, RowDocs, Rows};
 
@@ -109,7 +109,12 @@ impl Element for Equation {
             )
         });
         if !moves {
-            reader.error(Code::BadEquation, node.span.clone(), "the equation constrains nothing: no coordinate stands in it", None);
+            reader.error(
+                Code::BadEquation,
+                node.span.clone(),
+                "the equation constrains nothing: no coordinate stands in it",
+                None,
+            );
         }
         Some(Self { left, right })
     }

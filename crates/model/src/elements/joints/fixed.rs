@@ -14,10 +14,10 @@
 use mbint_derive::Element;
 use symdiff::Formula;
 
-use crate::grammar::{PointRef};
+use crate::grammar::PointRef;
 
-use super::{Joint, JointElement, Kinematics, Mobilizer, Orientation, Placement, RowDocs, Rows, Separation};
 use super::rows::{Frames, coincident, planar_angle};
+use super::{Joint, JointElement, Kinematics, Mobilizer, Orientation, Placement, RowDocs, Rows, Separation};
 
 /// Two points coincide and the bodies do not turn against one another.
 #[derive(Clone, Debug, Element)]
@@ -41,9 +41,17 @@ pub struct Fixed {
 
 impl JointElement for Fixed {
     const ROWS: &'static [RowDocs] = &[
-        RowDocs { name: "x, y, z", unit: "m", multiplier: "N: the force on the second body at B along the ground's axis" },
+        RowDocs {
+            name: "x, y, z",
+            unit: "m",
+            multiplier: "N: the force on the second body at B along the ground's axis",
+        },
         RowDocs { name: "angle", unit: "rad", multiplier: "N m: −λ is the torque on the second body; in the plane" },
-        RowDocs { name: "turn_x, turn_y, turn_z", unit: "rad", multiplier: "N m: −λ is the torque on the second body about the axes of the turned first frame" },
+        RowDocs {
+            name: "turn_x, turn_y, turn_z",
+            unit: "rad",
+            multiplier: "N m: −λ is the torque on the second body about the axes of the turned first frame",
+        },
     ];
 }
 

@@ -17,10 +17,10 @@ use symdiff::{Formula, Scalar};
 use crate::elements::Glyph;
 use crate::elements::meshing::{Member, Meshing};
 use crate::grammar::{Checked, Fields, JointCoordinate, MeshKind, OnJoint, Reader, Rotating, SymbolTable};
-use crate::syntax::codes::Code;
 use crate::multibody::{BuildError, Vector};
+use crate::syntax::codes::Code;
 
-use super::teeth::{self, ToothContact, Mesh, ToothForce};
+use super::teeth::{self, Mesh, ToothContact, ToothForce};
 use super::{Joint, JointElement, Kinematics, Row, RowDocs, Rows, Toothed};
 
 /// Angles in a fixed ratio: angle of the second = ratio * angle of the first + offset.
@@ -64,7 +64,12 @@ impl Checked for Gear {
     fn check_keys<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: &Fields<'_>) {
         if fields.get("cone_distance").is_some() && fields.get("pressure_angle").is_none() {
             let help = "e.g. `pressure_angle: 20 deg`".to_owned();
-            reader.error(Code::MisplacedKey, fields.key_span("cone_distance"), "`cone_distance` goes with a `pressure_angle`", help);
+            reader.error(
+                Code::MisplacedKey,
+                fields.key_span("cone_distance"),
+                "`cone_distance` goes with a `pressure_angle`",
+                help,
+            );
         }
     }
 
@@ -75,7 +80,12 @@ impl Checked for Gear {
     fn check<S: SymbolTable>(&self, reader: &mut Reader<'_, S>, fields: &Fields<'_>) {
         if self.flanks.pressure_angle.is_some() && self.between.iter().any(|of| matches!(of, Rotating::Body { .. })) {
             let help = "name the revolute joints that hold the gears instead of the bodies".to_owned();
-            reader.error(Code::MisplacedKey, fields.key_span("pressure_angle"), "the force of teeth acts between two bearings", help);
+            reader.error(
+                Code::MisplacedKey,
+                fields.key_span("pressure_angle"),
+                "the force of teeth acts between two bearings",
+                help,
+            );
         }
     }
 }

@@ -28,8 +28,8 @@ use symdiff::{Builder, Formula, Scalar};
 
 use crate::elements::Glyph;
 use crate::grammar::{Checked, Context, Fields, JointCoordinate, OnJoint, Reader, Requirement, SymbolTable, one_of};
-use crate::syntax::codes::Code;
 use crate::multibody::{BuildError, Vector};
+use crate::syntax::codes::Code;
 
 use super::{Joint, JointElement, Kinematics, Row, RowDocs, Rows};
 
@@ -174,7 +174,12 @@ impl Motor {
     }
 
     /// σ and Σ at u.
-    fn shape<'g>(&self, k: &dyn Kinematics<'g>, profile: Profile, u: Scalar<'g>) -> Result<[Scalar<'g>; 2], BuildError> {
+    fn shape<'g>(
+        &self,
+        k: &dyn Kinematics<'g>,
+        profile: Profile,
+        u: Scalar<'g>,
+    ) -> Result<[Scalar<'g>; 2], BuildError> {
         let one = k.graph().number(1.0);
         Ok(match profile {
             Profile::Cycloidal => {
@@ -228,7 +233,12 @@ impl Checked for Motor {
         };
         if *chosen == "position" {
             for key in ["from", "profile", "start", "duration", "ramp"].into_iter().filter(|key| given(key)) {
-                reader.error(Code::MisplacedKey, fields.key_span(key), format!("`{key}` does not go with `position`"), None);
+                reader.error(
+                    Code::MisplacedKey,
+                    fields.key_span(key),
+                    format!("`{key}` does not go with `position`"),
+                    None,
+                );
             }
             return;
         }
@@ -268,11 +278,21 @@ impl Checked for Motor {
         } else if speed.names().any(|(name, _)| reader.resolve(name, Context::Time).is_err()) {
             if fields.get("from").is_some() {
                 let help = "say the coordinate at the start in `initial`".to_owned();
-                reader.error(Code::BadMotor, fields.key_span("from"), "`from` does not go with a speed that follows the motion", help);
+                reader.error(
+                    Code::BadMotor,
+                    fields.key_span("from"),
+                    "`from` does not go with a speed that follows the motion",
+                    help,
+                );
             }
         } else if !is_integrable(speed) {
             let help = "polynomials, sin, cos, exp, sqrt, min, max, floor, smoothstep and `if` of straight lines with `and` and `or`, and their sums can be; or give it as `position`";
-            reader.error(Code::BadMotor, node.span.clone(), "this speed cannot be integrated by formulas", help.to_owned());
+            reader.error(
+                Code::BadMotor,
+                node.span.clone(),
+                "this speed cannot be integrated by formulas",
+                help.to_owned(),
+            );
         }
     }
 }

@@ -12,14 +12,13 @@
 use mbint_derive::Element;
 use symdiff::Formula;
 
-
 use crate::elements::Glyph;
 use crate::grammar::{Direction, PointRef};
 
 use crate::multibody::Vector;
 
-use super::{Joint, JointElement, Kinematics, Orientation, Placement, RowDocs, Rows, Separation};
 use super::rows::{Frames, point_on_line};
+use super::{Joint, JointElement, Kinematics, Orientation, Placement, RowDocs, Rows, Separation};
 
 /// The second point moves along a line through the first, fixed in the first body; it may turn about z.
 #[derive(Clone, Debug, Element)]
@@ -40,9 +39,21 @@ pub struct PinInSlot {
 
 impl JointElement for PinInSlot {
     const ROWS: &'static [RowDocs] = &[
-        RowDocs { name: "", unit: "m", multiplier: "N: −λ is the force on the pin along the slot's normal; in the plane" },
-        RowDocs { name: "normal_1, normal_2", unit: "m", multiplier: "N: −λ is the force on the second body at B along a normal of the line" },
-        RowDocs { name: "tilt_1, tilt_2", unit: "rad", multiplier: "N m: −λ is the torque on the second body across the axis" },
+        RowDocs {
+            name: "",
+            unit: "m",
+            multiplier: "N: −λ is the force on the pin along the slot's normal; in the plane",
+        },
+        RowDocs {
+            name: "normal_1, normal_2",
+            unit: "m",
+            multiplier: "N: −λ is the force on the second body at B along a normal of the line",
+        },
+        RowDocs {
+            name: "tilt_1, tilt_2",
+            unit: "rad",
+            multiplier: "N m: −λ is the torque on the second body across the axis",
+        },
     ];
 }
 

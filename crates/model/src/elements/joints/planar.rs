@@ -11,11 +11,10 @@
 
 use mbint_derive::Element;
 
-
 use crate::grammar::{Direction, PointRef};
 
-use super::{Joint, JointElement, Kinematics, Mobilizer, Orientation, Placement, RowDocs, Rows, Separation};
 use super::rows::Frames;
+use super::{Joint, JointElement, Kinematics, Mobilizer, Orientation, Placement, RowDocs, Rows, Separation};
 
 /// The second point moves in a plane through the first, and the bodies turn about its normal.
 #[derive(Clone, Debug, Element)]
@@ -39,8 +38,16 @@ pub struct Planar {
 impl JointElement for Planar {
     const SPATIAL: bool = true;
     const ROWS: &'static [RowDocs] = &[
-        RowDocs { name: "normal", unit: "m", multiplier: "N: −λ is the force on the second body at B along the normal" },
-        RowDocs { name: "tilt_1, tilt_2", unit: "rad", multiplier: "N m: −λ is the torque on the second body across the axis" },
+        RowDocs {
+            name: "normal",
+            unit: "m",
+            multiplier: "N: −λ is the force on the second body at B along the normal",
+        },
+        RowDocs {
+            name: "tilt_1, tilt_2",
+            unit: "rad",
+            multiplier: "N m: −λ is the torque on the second body across the axis",
+        },
     ];
 }
 

@@ -17,8 +17,8 @@ use symdiff::{Formula, Scalar};
 use crate::elements::Glyph;
 use crate::elements::meshing::{Member, Meshing, Rim};
 use crate::grammar::{Checked, Fields, JointCoordinate, MeshKind, OnJoint, Reader, RotatingJoint, SymbolTable};
-use crate::syntax::codes::Code;
 use crate::multibody::{BuildError, Vector};
+use crate::syntax::codes::Code;
 
 use super::{Joint, JointElement, Kinematics, Row, RowDocs, Rows};
 use crate::elements::tuning::TUNING;
@@ -96,7 +96,12 @@ impl Checked for Planetary {
         let given: Vec<&str> = KEYS.into_iter().filter(|key| fields.get(key).is_some()).collect();
         if given.len() < 2 {
             let help = "name the joints of two of `sun`, `ring` and `carrier` at least; a member that is not named stands still".to_owned();
-            reader.error(Code::IncompleteElement, fields.key_span("ratio"), "one wheel alone is no planetary set", help);
+            reader.error(
+                Code::IncompleteElement,
+                fields.key_span("ratio"),
+                "one wheel alone is no planetary set",
+                help,
+            );
             return;
         }
         let members = self.members();

@@ -10,12 +10,11 @@
 use mbint_derive::Element;
 use symdiff::Formula;
 
-
 use crate::elements::Glyph;
 use crate::grammar::{Direction, PointRef};
 
-use super::{Joint, JointElement, Kinematics, Orientation, Placement, RowDocs, Rows, Separation};
 use super::rows::point_on_line;
+use super::{Joint, JointElement, Kinematics, Orientation, Placement, RowDocs, Rows, Separation};
 
 /// The second point moves along a line through the first, fixed in the first body.
 #[derive(Clone, Debug, Element)]
@@ -35,8 +34,16 @@ pub struct PointOnLine {
 
 impl JointElement for PointOnLine {
     const ROWS: &'static [RowDocs] = &[
-        RowDocs { name: "", unit: "m", multiplier: "N: −λ is the force on the second body at B along the line's normal; in the plane" },
-        RowDocs { name: "normal_1, normal_2", unit: "m", multiplier: "N: −λ is the force on the second body at B along a normal of the line" },
+        RowDocs {
+            name: "",
+            unit: "m",
+            multiplier: "N: −λ is the force on the second body at B along the line's normal; in the plane",
+        },
+        RowDocs {
+            name: "normal_1, normal_2",
+            unit: "m",
+            multiplier: "N: −λ is the force on the second body at B along a normal of the line",
+        },
     ];
 }
 

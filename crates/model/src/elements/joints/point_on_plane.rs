@@ -10,12 +10,11 @@
 use mbint_derive::Element;
 use symdiff::Formula;
 
-
 use crate::elements::Glyph;
 use crate::grammar::{Direction, PointRef};
 
-use super::{Joint, JointElement, Kinematics, Orientation, Placement, RowDocs, Rows, Separation};
 use super::rows::Frames;
+use super::{Joint, JointElement, Kinematics, Orientation, Placement, RowDocs, Rows, Separation};
 
 /// The second point moves in a plane through the first, fixed in the first body.
 #[derive(Clone, Debug, Element)]
@@ -36,9 +35,10 @@ pub struct PointOnPlane {
 }
 
 impl JointElement for PointOnPlane {
-    const ROWS: &'static [RowDocs] = &[
-        RowDocs { name: "", unit: "m", multiplier: "N: −λ is the force on the second body at B along the normal" },
-    ];
+    const ROWS: &'static [RowDocs] =
+        &[RowDocs {
+            name: "", unit: "m", multiplier: "N: −λ is the force on the second body at B along the normal"
+        }];
 }
 
 impl Joint for PointOnPlane {

@@ -18,8 +18,8 @@ use symdiff::Formula;
 
 use crate::grammar::{Direction, PointRef};
 
-use super::{Joint, JointElement, Kinematics, Mobilizer, Orientation, Placement, RowDocs, Rows, Separation};
 use super::rows::{Frames, planar_angle, planar_normal};
+use super::{Joint, JointElement, Kinematics, Mobilizer, Orientation, Placement, RowDocs, Rows, Separation};
 
 /// The second point moves along a line through the first, without turning against the first body.
 #[derive(Clone, Debug, Element)]
@@ -44,10 +44,22 @@ pub struct Prismatic {
 
 impl JointElement for Prismatic {
     const ROWS: &'static [RowDocs] = &[
-        RowDocs { name: "normal", unit: "m", multiplier: "N: −λ is the force on the second body at B along the line's normal; in the plane" },
+        RowDocs {
+            name: "normal",
+            unit: "m",
+            multiplier: "N: −λ is the force on the second body at B along the line's normal; in the plane",
+        },
         RowDocs { name: "angle", unit: "rad", multiplier: "N m: −λ is the torque on the second body; in the plane" },
-        RowDocs { name: "normal_1, normal_2", unit: "m", multiplier: "N: −λ is the force on the second body at B along a normal of the line" },
-        RowDocs { name: "turn_x, turn_y, turn_z", unit: "rad", multiplier: "N m: −λ is the torque on the second body about the axes of the turned first frame" },
+        RowDocs {
+            name: "normal_1, normal_2",
+            unit: "m",
+            multiplier: "N: −λ is the force on the second body at B along a normal of the line",
+        },
+        RowDocs {
+            name: "turn_x, turn_y, turn_z",
+            unit: "rad",
+            multiplier: "N m: −λ is the torque on the second body about the axes of the turned first frame",
+        },
     ];
 }
 

@@ -14,10 +14,10 @@ use symdiff::{Formula, Scalar};
 
 use crate::elements::Glyph;
 use crate::elements::meshing::{Member, Meshing};
-use crate::grammar::{Checked, JointCoordinate, MeshKind, OnJoint, SlidingJoint, RotatingJoint};
+use crate::grammar::{Checked, JointCoordinate, MeshKind, OnJoint, RotatingJoint, SlidingJoint};
 use crate::multibody::{BuildError, Vector};
 
-use super::teeth::{self, ToothContact, Mesh, ToothForce};
+use super::teeth::{self, Mesh, ToothContact, ToothForce};
 use super::{Joint, JointElement, Kinematics, Row, RowDocs, Rows, Toothed};
 
 /// A displacement in a fixed ratio to an angle: displacement of the rack = radius * angle of the pinion + offset.

@@ -11,11 +11,10 @@
 
 use mbint_derive::Element;
 
-
 use crate::grammar::{Axis, PointRef};
 
-use super::{Joint, JointElement, Kinematics, Mobilizer, Orientation, Placement, RowDocs, Rows, Separation};
 use super::rows::{Frames, coincident};
+use super::{Joint, JointElement, Kinematics, Mobilizer, Orientation, Placement, RowDocs, Rows, Separation};
 
 /// Two points coincide, and the bodies turn about an axis against one another.
 #[derive(Clone, Debug, Element)]
@@ -39,8 +38,16 @@ pub struct Revolute {
 impl JointElement for Revolute {
     const TURNS: bool = true;
     const ROWS: &'static [RowDocs] = &[
-        RowDocs { name: "x, y, z", unit: "m", multiplier: "N: the force on the second body at B along the ground's axis" },
-        RowDocs { name: "tilt_1, tilt_2", unit: "rad", multiplier: "N m: −λ is the torque on the second body across the axis" },
+        RowDocs {
+            name: "x, y, z",
+            unit: "m",
+            multiplier: "N: the force on the second body at B along the ground's axis",
+        },
+        RowDocs {
+            name: "tilt_1, tilt_2",
+            unit: "rad",
+            multiplier: "N m: −λ is the torque on the second body across the axis",
+        },
     ];
 }
 

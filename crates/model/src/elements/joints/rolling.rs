@@ -15,8 +15,8 @@ use symdiff::Formula;
 
 use crate::elements::Glyph;
 use crate::grammar::{Checked, Direction, Fields, PointRef, Reader, SymbolTable};
-use crate::syntax::codes::Code;
 use crate::multibody::Vector;
+use crate::syntax::codes::Code;
 
 use super::rows::planar_normal;
 use super::{Joint, JointElement, Kinematics, Orientation, Placement, Row, RowDocs, Rows, Separation};
@@ -51,7 +51,12 @@ impl Checked for Rolling {
     fn check<S: SymbolTable>(&self, reader: &mut Reader<'_, S>, fields: &Fields<'_>) {
         if reader.model.is_spatial() {
             let help = "in space `rolling_on_plane` rolls a disc; on a rail a `rack` couples the angle of an axle to the way of its carriage";
-            reader.error(Code::NotPlanar, fields.at.clone(), "a `rolling` wheel is one of the plane, but the model is spatial", help.to_owned());
+            reader.error(
+                Code::NotPlanar,
+                fields.at.clone(),
+                "a `rolling` wheel is one of the plane, but the model is spatial",
+                help.to_owned(),
+            );
         }
     }
 }
@@ -59,7 +64,11 @@ impl Checked for Rolling {
 impl JointElement for Rolling {
     const ROWS: &'static [RowDocs] = &[
         RowDocs { name: "normal", unit: "m", multiplier: "N: −λ is the force on the wheel away from the rail" },
-        RowDocs { name: "slip", unit: "m", multiplier: "N: −λ is the force on the wheel along the rail, where they touch" },
+        RowDocs {
+            name: "slip",
+            unit: "m",
+            multiplier: "N: −λ is the force on the wheel along the rail, where they touch",
+        },
     ];
 }
 
@@ -92,9 +101,6 @@ impl Joint for Rolling {
         let [of_rail, of_wheel] = self.between.map(|point| k.angle(point.body));
         let value = along.dot(b - a) + radius * (of_wheel - of_rail) - offset;
         let torque = -radius * Vector::along(k.graph(), 2);
-        Ok(vec![
-            Row { value: height.value - radius, ..height },
-            Row { name: "slip", value, force: -along, torque },
-        ])
+        Ok(vec![Row { value: height.value - radius, ..height }, Row { name: "slip", value, force: -along, torque }])
     }
 }

@@ -12,10 +12,10 @@
 use mbint_derive::Element;
 use symdiff::Formula;
 
-use crate::grammar::quantity::Dimension;
 use crate::grammar::formulas::Written;
-use crate::syntax::codes::Code;
+use crate::grammar::quantity::Dimension;
 use crate::grammar::{Axis, Checked, Fields, JointCoordinate, OnJoint, PointRef, Reader, SymbolTable};
+use crate::syntax::codes::Code;
 
 use super::cylindrical::cylindrical;
 use super::rows::Frames;
@@ -48,9 +48,21 @@ impl JointElement for Screw {
     const SPATIAL: bool = true;
     const TURNS: bool = true;
     const ROWS: &'static [RowDocs] = &[
-        RowDocs { name: "normal_1, normal_2", unit: "m", multiplier: "N: −λ is the force on the second body at B along a normal of the line" },
-        RowDocs { name: "tilt_1, tilt_2", unit: "rad", multiplier: "N m: −λ is the torque on the second body across the axis" },
-        RowDocs { name: "advance", unit: "m", multiplier: "N: −λ is the force on the second body at B along the axis, +λ pitch/2π the torque about it" },
+        RowDocs {
+            name: "normal_1, normal_2",
+            unit: "m",
+            multiplier: "N: −λ is the force on the second body at B along a normal of the line",
+        },
+        RowDocs {
+            name: "tilt_1, tilt_2",
+            unit: "rad",
+            multiplier: "N m: −λ is the torque on the second body across the axis",
+        },
+        RowDocs {
+            name: "advance",
+            unit: "m",
+            multiplier: "N: −λ is the force on the second body at B along the axis, +λ pitch/2π the torque about it",
+        },
     ];
 }
 
@@ -98,7 +110,12 @@ impl Checked for Screw {
         };
         if per_angle {
             let help = "a pitch is the advance in a turn: write `5 mm` for 5 mm/rev".to_owned();
-            reader.error(Code::WrongDimension, node.span.clone(), "a length an angle stands where a length (m) belongs", help);
+            reader.error(
+                Code::WrongDimension,
+                node.span.clone(),
+                "a length an angle stands where a length (m) belongs",
+                help,
+            );
         }
     }
 }

@@ -8,11 +8,10 @@
 
 use mbint_derive::Element;
 
+use crate::grammar::PointRef;
 
-use crate::grammar::{PointRef};
-
-use super::{Joint, JointElement, Kinematics, Mobilizer, Orientation, Placement, RowDocs, Rows, Separation};
 use super::rows::coincident;
+use super::{Joint, JointElement, Kinematics, Mobilizer, Orientation, Placement, RowDocs, Rows, Separation};
 
 /// Two points coincide.
 #[derive(Clone, Debug, Element)]
@@ -31,9 +30,11 @@ pub struct Spherical {
 
 impl JointElement for Spherical {
     const SPATIAL: bool = true;
-    const ROWS: &'static [RowDocs] = &[
-        RowDocs { name: "x, y, z", unit: "m", multiplier: "N: the force on the second body at B along the ground's axis" },
-    ];
+    const ROWS: &'static [RowDocs] = &[RowDocs {
+        name: "x, y, z",
+        unit: "m",
+        multiplier: "N: the force on the second body at B along the ground's axis",
+    }];
 }
 
 impl Joint for Spherical {

@@ -11,13 +11,12 @@
 
 use mbint_derive::Element;
 
-
 use crate::grammar::{Direction, PointRef};
 
 use crate::multibody::Vector;
 
-use super::{Joint, JointElement, Kinematics, Mobilizer, Orientation, Placement, Row, RowDocs, Rows, Separation};
 use super::rows::{Frames, coincident};
+use super::{Joint, JointElement, Kinematics, Mobilizer, Orientation, Placement, Row, RowDocs, Rows, Separation};
 
 /// Two points coincide, and an axis of the first frame stays perpendicular to one of the second.
 #[derive(Clone, Debug, Element)]
@@ -41,7 +40,11 @@ pub struct Universal {
 impl JointElement for Universal {
     const SPATIAL: bool = true;
     const ROWS: &'static [RowDocs] = &[
-        RowDocs { name: "x, y, z", unit: "m", multiplier: "N: the force on the second body at B along the ground's axis" },
+        RowDocs {
+            name: "x, y, z",
+            unit: "m",
+            multiplier: "N: the force on the second body at B along the ground's axis",
+        },
         RowDocs { name: "cross", unit: "1", multiplier: "N m: the torque on the second body about a₁ × b₂" },
     ];
 }

@@ -92,11 +92,7 @@ impl Worm {
         }
     }
 
-    fn pitch_point<'g, 'k>(
-        &self,
-        own: usize,
-        k: &'k dyn Kinematics<'g>,
-    ) -> Result<PitchPoint<'g, 'k>, BuildError> {
+    fn pitch_point<'g, 'k>(&self, own: usize, k: &'k dyn Kinematics<'g>) -> Result<PitchPoint<'g, 'k>, BuildError> {
         let mesh = Mesh::of(k, own, self.on())?;
         let [worm, wheel] = mesh.toothed;
         if mesh.nominal(worm.axis.dot(wheel.axis)).abs() > TUNING.aligned {
@@ -107,7 +103,8 @@ impl Worm {
         let apart = offset - along * worm.axis - offset.dot(wheel.axis) * wheel.axis;
         let distance = apart.norm();
         if mesh.nominal(distance) <= 0.0 {
-            return Err(mesh.refused("the axes of worm and wheel intersect: they have to be the sum of their pitch radii apart"));
+            return Err(mesh
+                .refused("the axes of worm and wheel intersect: they have to be the sum of their pitch radii apart"));
         }
         let outward = apart / distance;
         let angle = k.number(&self.lead_angle)?;
@@ -134,11 +131,10 @@ impl Worm {
 impl JointElement for Worm {
     const SPATIAL: bool = true;
     const COUPLES: bool = true;
-    const ROWS: &'static [RowDocs] = &[RowDocs {
-        name: "",
-        unit: "rad",
-        multiplier: "N m: −λ is the torque on the wheel, i λ that on the worm",
-    }];
+    const ROWS: &'static [RowDocs] =
+        &[RowDocs {
+            name: "", unit: "rad", multiplier: "N m: −λ is the torque on the wheel, i λ that on the worm"
+        }];
 }
 
 impl Joint for Worm {

@@ -3,7 +3,7 @@
 use mbint_derive::Element;
 use symdiff::Formula;
 
-use super::{ShapeFrame, ShapeElement};
+use super::{ShapeElement, ShapeFrame};
 use crate::elements::effects::ContactLine;
 use crate::elements::form::Form;
 use crate::grammar::{Checked, Fields, Reader, SymbolTable};

@@ -21,7 +21,6 @@
 
 mod spatial;
 
-
 use mbint_derive::Element;
 use symdiff::{Formula, Scalar};
 
@@ -29,9 +28,9 @@ use self::spatial::{SpatialBeam, bow_of_shear, shear_number};
 use super::{ForceElement, Forces, LineMass, Section, TypedSensor};
 use crate::elements::Glyph;
 use crate::grammar::quantity::Dimension;
-use crate::grammar::{Checked, Direction, Fields, Sensor, PointRef, Reader, SymbolTable};
-use crate::syntax::codes::Code;
+use crate::grammar::{Checked, Direction, Fields, PointRef, Reader, Sensor, SymbolTable};
 use crate::multibody::{BuildError, Vector};
+use crate::syntax::codes::Code;
 
 /// A massless beam that bends between two bodies, in space with `torsional_stiffness`.
 #[derive(Clone, Debug, Element)]
@@ -109,7 +108,10 @@ impl ForceElement for Beam {
         let Flexible { body, mass_per_length } = self.flexible.as_ref()?;
         let section = self.torsional_stiffness.as_ref().map(|_| Section {
             axial_stiffness: &self.axial_stiffness,
-            bending_stiffness: [self.bending_stiffness_y.as_ref().unwrap_or(&self.bending_stiffness), &self.bending_stiffness],
+            bending_stiffness: [
+                self.bending_stiffness_y.as_ref().unwrap_or(&self.bending_stiffness),
+                &self.bending_stiffness,
+            ],
         });
         Some(LineMass { body, between: self.between, axis: &self.axis, length: &self.length, mass_per_length, section })
     }
@@ -187,7 +189,7 @@ impl ForceElement for Beam {
             }
             Some(_) => 0.5 * sum_of_products(bending_moments(angles), angles),
         };
-        let given: Vec<_> = [axial, bending, free]  .into_iter().chain(shears).collect();
+        let given: Vec<_> = [axial, bending, free].into_iter().chain(shears).collect();
         forces.potential(&given, stretched + bent);
         let at_start = -moments[0];
         forces.sensors([

@@ -21,8 +21,8 @@ use symdiff::Scalar;
 
 use super::hull::{Hull, constant};
 use super::solid::Segment;
-use crate::multibody::Vector;
 use crate::elements::tuning::TUNING;
+use crate::multibody::Vector;
 
 /// Candidate for the nearest feature: its distance, not positive where the feature is not nearest, and t.
 type Candidate<'g> = (Scalar<'g>, Scalar<'g>);

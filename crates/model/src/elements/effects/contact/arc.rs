@@ -6,8 +6,8 @@
 
 use symdiff::Scalar;
 
-use crate::multibody::Vector;
 use crate::elements::tuning::TUNING;
+use crate::multibody::Vector;
 
 /// An arc in the x and y of a frame.
 #[derive(Clone, Copy, Debug)]

@@ -102,12 +102,22 @@ impl ContactLine {
         let count = self.0.len();
         if count < least {
             let article = if key.starts_with('o') { "an" } else { "a" };
-            reader.error(Code::BadSurface, at, format!("{article} `{key}` has {least} points or more, not {count}"), None);
+            reader.error(
+                Code::BadSurface,
+                at,
+                format!("{article} `{key}` has {least} points or more, not {count}"),
+                None,
+            );
             return;
         }
         let is_open = least == 2;
         if is_open && self.0[0].radius.is_some() {
-            reader.error(Code::BadSurface, at, format!("a `{key}` does not begin with an arc: there is no point before"), None);
+            reader.error(
+                Code::BadSurface,
+                at,
+                format!("a `{key}` does not begin with an arc: there is no point before"),
+                None,
+            );
             return;
         }
         let edges = if is_open { count - 1 } else { count };
@@ -125,7 +135,12 @@ impl ContactLine {
                 let label = reader.corners[corner].label.clone();
                 if chord == 0.0 {
                     let help = (end == 1).then(|| "it closes by itself: leave its last point out".to_owned());
-                    reader.error(Code::BadSurface, at, format!("points {start} and {end} of the `{key}` are one point{label}"), help);
+                    reader.error(
+                        Code::BadSurface,
+                        at,
+                        format!("points {start} and {end} of the `{key}` are one point{label}"),
+                        help,
+                    );
                     return;
                 }
                 if let Some(radius) = radius.filter(|radius| 2.0 * radius.abs() <= chord) {

@@ -23,8 +23,8 @@ use symdiff::Scalar;
 use super::rod::Rod;
 use super::solid::{Gap, Segment};
 use super::touch::Touch;
-use crate::multibody::{Pair, Vector};
 use crate::elements::tuning::TUNING;
+use crate::multibody::{Pair, Vector};
 
 /// A cylinder of the second body.
 #[derive(Clone, Copy, Debug)]
@@ -129,7 +129,12 @@ struct Beside<'g> {
 }
 
 impl<'g> Beside<'g> {
-    fn of(cylinder: &ContactCylinder<'g>, pair: &Pair<'g>, (from, tangent, length): Segment<'g>, reach: Scalar<'g>) -> Self {
+    fn of(
+        cylinder: &ContactCylinder<'g>,
+        pair: &Pair<'g>,
+        (from, tangent, length): Segment<'g>,
+        reach: Scalar<'g>,
+    ) -> Self {
         let (start, along) = cylinder.axis.outward(pair);
         let height = cylinder.axis.length;
         let zero = length.builder().number(0.0);

@@ -13,7 +13,7 @@
 use super::cylinder::ContactCylinder;
 use super::facets::Facets;
 use super::solid::Solid;
-use super::touch::{WholeSurface, ContactSurface, Touch};
+use super::touch::{ContactSurface, Touch, WholeSurface};
 use crate::multibody::{Pair, Vector};
 
 /// All points where they may touch.
@@ -33,7 +33,9 @@ pub fn touches<'g>(surface: &ContactSurface<'g>, cylinder: &ContactCylinder<'g>,
             let line = (origin + pair.outward(start), pair.outward(tangent), length);
             return vec![cylinder.touch(pair, cylinder.nearest_on(pair, line, reach), reach)];
         }
-        WholeSurface::Solid(Solid::Block { half: [Some(x), Some(y), Some(z)] }, reach) => (Facets::of_block([x, y, z]), reach),
+        WholeSurface::Solid(Solid::Block { half: [Some(x), Some(y), Some(z)] }, reach) => {
+            (Facets::of_block([x, y, z]), reach)
+        }
         WholeSurface::Hull(ref hull, reach) => (Facets::of_hull(hull, reach.builder()), reach),
         WholeSurface::Solid(..) | WholeSurface::Hollow(_) | WholeSurface::Ground(_) => return Vec::new(),
     };

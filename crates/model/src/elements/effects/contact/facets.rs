@@ -4,8 +4,8 @@ use symdiff::{Builder, Scalar};
 
 use super::hull::{Hull, constant};
 use super::solid::Segment;
-use crate::multibody::Vector;
 use crate::elements::tuning::TUNING;
+use crate::multibody::Vector;
 
 /// A polyhedron in its body's frame.
 #[derive(Clone, Debug)]

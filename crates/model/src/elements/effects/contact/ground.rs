@@ -11,11 +11,11 @@
 
 use symdiff::Scalar;
 
-use crate::elements::effects::Forces;
 use super::solid::Gap;
+use crate::elements::effects::Forces;
+use crate::elements::tuning::TUNING;
 use crate::grammar::OfPlace;
 use crate::multibody::{BuildError, OwnFunction, Pair, Vector};
-use crate::elements::tuning::TUNING;
 
 /// A height over a point.
 #[derive(Clone, Copy, Debug)]

@@ -18,10 +18,10 @@ use symdiff::{Builder, Formula, Scalar};
 
 use super::course::Points;
 use super::solid::Gap;
-use crate::grammar::{Fields, Reader, SymbolTable};
-use crate::syntax::codes::Code;
-use crate::multibody::{Pair, Vector};
 use crate::elements::tuning::TUNING;
+use crate::grammar::{Fields, Reader, SymbolTable};
+use crate::multibody::{Pair, Vector};
+use crate::syntax::codes::Code;
 
 type Point = [f64; 3];
 
@@ -102,7 +102,8 @@ impl Hull {
                         let above = |point: &Point| dot(normal, *point) - height;
                         let is_known = faces.iter().any(|face| dot(face.normal, normal) > 1.0 - TUNING.points_of_plane);
                         if !is_known && points.iter().all(|point| above(point) <= TUNING.points_of_plane * size) {
-                            let corners = (0..points.len()).filter(|&index| above(&points[index]) >= -TUNING.points_of_plane * size);
+                            let corners = (0..points.len())
+                                .filter(|&index| above(&points[index]) >= -TUNING.points_of_plane * size);
                             faces.push(Face { normal, height, corners: corners.collect() });
                         }
                     }
@@ -274,7 +275,12 @@ pub fn check<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: &Fields<'_>, ke
         return;
     }
     if points.len() > TUNING.points_of_hull {
-        reader.error(Code::BadSurface, at, format!("a `{key}` has at most {} points, not {}", TUNING.points_of_hull, points.len()), None);
+        reader.error(
+            Code::BadSurface,
+            at,
+            format!("a `{key}` has at most {} points, not {}", TUNING.points_of_hull, points.len()),
+            None,
+        );
         return;
     }
     let Some(numbers) = numbers(reader, points) else { return };
@@ -300,6 +306,7 @@ fn numbers<S: SymbolTable>(reader: &Reader<'_, S>, points: &Points) -> Option<Ve
 
 /// Number of edges of the hull of points; 0 if they make none.
 pub fn edges<S: SymbolTable>(reader: &Reader<'_, S>, points: &Points) -> usize {
-    let hull = numbers(reader, points).filter(|points| (4..=TUNING.points_of_hull).contains(&points.len())).and_then(Hull::of);
+    let hull =
+        numbers(reader, points).filter(|points| (4..=TUNING.points_of_hull).contains(&points.len())).and_then(Hull::of);
     hull.map_or(0, |hull| hull.edges.len())
 }

@@ -47,18 +47,18 @@ use self::course::{ContactLine, Points, placed};
 use self::cylinder::ContactCylinder;
 use self::felt::{Felt, SENSORS};
 use self::ground::Ground;
-use self::hull::{Hull};
-use super::laws::impact::Push;
+use self::hull::Hull;
 use self::outline::ContactEdges;
-use self::polyhedron::{Polyhedron};
-use self::rod::{Rod};
-use self::solid::{Solid};
+use self::polyhedron::Polyhedron;
+use self::rod::Rod;
+use self::solid::Solid;
 use self::touch::{ContactLaw, ContactSurface, Touch};
+use super::laws::impact::Push;
 use super::{ForceElement, Forces, Friction, FrictionAlong, Impact, TypedSensor};
 use crate::elements::{Shape, SurfaceAt, Surroundings};
 use crate::grammar::{Axis, Checked, Components, Direction, Fields, OfPlace, PointRef, Reader, SymbolTable};
-use crate::syntax::codes::Code;
 use crate::multibody::{BuildError, Pair, Vector};
+use crate::syntax::codes::Code;
 
 /// Contact of a plane, a circle, a sphere, a cylinder, a capsule, a block, a hull or edges on one body with a circle,
 /// sphere, capsule, cylinder or point on another.
@@ -203,13 +203,19 @@ impl Contact {
             ContactSurface::Edges(_) => forces.prescribed(&self.rounding)? + radius,
             ContactSurface::Whole(touch::WholeSurface::Solid(_, reach) | touch::WholeSurface::Hull(_, reach)) => *reach,
             ContactSurface::Whole(touch::WholeSurface::Round(outer)) => *outer + radius,
-            ContactSurface::Whole(touch::WholeSurface::Plane(_) | touch::WholeSurface::Hollow(_) | touch::WholeSurface::Ground(_)) => return Ok(None),
+            ContactSurface::Whole(
+                touch::WholeSurface::Plane(_) | touch::WholeSurface::Hollow(_) | touch::WholeSurface::Ground(_),
+            ) => return Ok(None),
         };
         Ok((!deepest.is_zero()).then_some(deepest))
     }
 
     /// Surface of the first body.
-    fn surface<'g>(&self, forces: &dyn Forces<'g>, radius: Scalar<'g>) -> Result<Option<ContactSurface<'g>>, BuildError> {
+    fn surface<'g>(
+        &self,
+        forces: &dyn Forces<'g>,
+        radius: Scalar<'g>,
+    ) -> Result<Option<ContactSurface<'g>>, BuildError> {
         // A cylinder's axis is no line that all of it is about.
         let around = if self.cylinder.is_some() { forces.graph().number(0.0) } else { radius };
         Ok(Some(if let Some(normal) = &self.plane {
@@ -324,8 +330,7 @@ impl Checked for Contact {
             [] if !fields.lacks_all(&SURFACES) => {}
             [] => {
                 let help = "say what the first body's surface is, e.g. `plane: y`".to_owned();
-                let message =
-                    "a contact needs `plane`, `circle`, `hollow`, `path`, `polygon`, `height`, `capsule`, `block` or `hull`";
+                let message = "a contact needs `plane`, `circle`, `hollow`, `path`, `polygon`, `height`, `capsule`, `block` or `hull`";
                 reader.error(Code::IncompleteElement, fields.at.clone(), message, help);
             }
             ["capsule"] => {
@@ -343,12 +348,19 @@ impl Checked for Contact {
             }
             [surface] => {
                 if fields.get("rounding").is_some() {
-                    let message = format!("`rounding` goes with `path`, `polygon`, `capsule`, `block` or `hull`, not with `{surface}`");
+                    let message = format!(
+                        "`rounding` goes with `path`, `polygon`, `capsule`, `block` or `hull`, not with `{surface}`"
+                    );
                     reader.error(Code::MisplacedKey, fields.key_span("rounding"), message, None);
                 }
             }
             [first, second, ..] => {
-                reader.error(Code::ExclusiveKeys, fields.key_span(second), format!("`{first}` and `{second}` exclude each other"), None);
+                reader.error(
+                    Code::ExclusiveKeys,
+                    fields.key_span(second),
+                    format!("`{first}` and `{second}` exclude each other"),
+                    None,
+                );
             }
         }
     }

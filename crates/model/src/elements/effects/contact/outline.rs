@@ -13,14 +13,14 @@
 
 use symdiff::Scalar;
 
-use crate::elements::effects::Forces;
 use super::arc::Arc;
 use super::course::Corner;
-use crate::elements::effects::laws::dry_friction::Resistance;
 use super::felt::Felt;
+use crate::elements::effects::Forces;
+use crate::elements::effects::laws::dry_friction::Resistance;
 use crate::elements::effects::laws::impact::Push;
-use crate::multibody::{Pair, Vector};
 use crate::elements::tuning::TUNING;
+use crate::multibody::{Pair, Vector};
 
 /// Edges in the x and y of a frame.
 #[derive(Clone, Debug)]
@@ -87,7 +87,14 @@ impl<'g> ContactEdges<'g> {
     }
 
     /// Adds the forces on a circle about `centre`, which belongs to the second body.
-    pub fn apply(&self, forces: &mut dyn Forces<'g>, pair: &Pair<'g>, centre: Vector<'g>, impact: &Push<'g>, friction: Option<&Resistance<'g>>) -> Felt<'g> {
+    pub fn apply(
+        &self,
+        forces: &mut dyn Forces<'g>,
+        pair: &Pair<'g>,
+        centre: Vector<'g>,
+        impact: &Push<'g>,
+        friction: Option<&Resistance<'g>>,
+    ) -> Felt<'g> {
         let g = forces.graph();
         let axes = [0, 1, 2].map(|axis| pair.outward(Vector::along(g, axis)));
         let inward = |vector: Vector<'g>| Vector::from(axes.map(|axis| axis.dot(vector)));
@@ -121,7 +128,14 @@ impl<'g> ContactEdges<'g> {
         }
     }
 
-    fn pushes(&self, places: &[Place<'g>], velocity: Vector<'g>, spin: Vector<'g>, impact: &Push<'g>, friction: Option<&Resistance<'g>>) -> Sum<'g> {
+    fn pushes(
+        &self,
+        places: &[Place<'g>],
+        velocity: Vector<'g>,
+        spin: Vector<'g>,
+        impact: &Push<'g>,
+        friction: Option<&Resistance<'g>>,
+    ) -> Sum<'g> {
         let g = self.reach.builder();
         let (none, zero) = (Vector::zero(g), g.number(0.0));
         let mut sum = Sum { force: none, torque: none, push: zero, friction: none, along: zero, energy: zero };

@@ -21,11 +21,11 @@ use super::facets::Facets;
 use super::hull::{self, Hull};
 use super::rod::Rod;
 use super::solid::Solid;
-use super::touch::{WholeSurface, ContactSurface, Touch};
-use crate::grammar::{Reader, Span, SymbolTable};
-use crate::syntax::codes::Code;
-use crate::multibody::{Pair, Vector};
+use super::touch::{ContactSurface, Touch, WholeSurface};
 use crate::elements::tuning::TUNING;
+use crate::grammar::{Reader, Span, SymbolTable};
+use crate::multibody::{Pair, Vector};
+use crate::syntax::codes::Code;
 
 /// Edges of a box.
 const EDGES: usize = 12;

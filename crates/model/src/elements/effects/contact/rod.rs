@@ -15,10 +15,10 @@ use super::beside::nearest_to_block;
 use super::course::Points;
 use super::hull::Hull;
 use super::solid::Segment;
-use crate::grammar::{Fields, Reader, SymbolTable};
-use crate::syntax::codes::Code;
-use crate::multibody::{Pair, Vector};
 use crate::elements::tuning::TUNING;
+use crate::grammar::{Fields, Reader, SymbolTable};
+use crate::multibody::{Pair, Vector};
+use crate::syntax::codes::Code;
 
 /// A line in the second frame.
 #[derive(Clone, Copy, Debug)]
@@ -155,7 +155,12 @@ pub fn check_keys<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: &Fields<'_
     let shapes = ["corners", "line", "cylinder", "box", "polyhedron"].into_iter();
     let shapes: Vec<&str> = shapes.filter(|key| fields.get(key).is_some()).collect();
     if let [first, second, ..] = shapes.as_slice() {
-        reader.error(Code::ExclusiveKeys, fields.key_span(second), format!("`{first}` and `{second}` exclude each other"), None);
+        reader.error(
+            Code::ExclusiveKeys,
+            fields.key_span(second),
+            format!("`{first}` and `{second}` exclude each other"),
+            None,
+        );
         return;
     }
     let planar = [
@@ -165,7 +170,12 @@ pub fn check_keys<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: &Fields<'_
     if let Some((key, help)) =
         planar.into_iter().find(|(key, _)| fields.get(key).is_some() && !reader.model.is_spatial())
     {
-        reader.error(Code::NotPlanar, fields.key_span(key), format!("a `{key}` needs `space: spatial`"), help.to_owned());
+        reader.error(
+            Code::NotPlanar,
+            fields.key_span(key),
+            format!("a `{key}` needs `space: spatial`"),
+            help.to_owned(),
+        );
     }
     let Some((key, surfaces, help)) = TOUCHED.into_iter().find(|(key, ..)| fields.get(key).is_some()) else { return };
     if matches!(key, "line" | "cylinder") && fields.lacks_all(&["radius"]) {
@@ -176,11 +186,21 @@ pub fn check_keys<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: &Fields<'_
         && fields.lacks_all(&["rounding"])
     {
         let message = format!("a `{edges}` that a `cylinder` touches needs `rounding`");
-        reader.error(Code::IncompleteElement, fields.key_span(edges), message, "surfaces are told apart to that depth".to_owned());
+        reader.error(
+            Code::IncompleteElement,
+            fields.key_span(edges),
+            message,
+            "surfaces are told apart to that depth".to_owned(),
+        );
     }
     let others = all.iter().copied().filter(|surface| !surfaces.contains(surface));
     let is_turned = fields.get("circle").is_some();
     if let Some(other) = others.chain(is_turned.then_some("axis")).find(|other| fields.get(other).is_some()) {
-        reader.error(Code::MisplacedKey, fields.key_span(key), format!("`{key}` does not go with `{other}`"), help.to_owned());
+        reader.error(
+            Code::MisplacedKey,
+            fields.key_span(key),
+            format!("`{key}` does not go with `{other}`"),
+            help.to_owned(),
+        );
     }
 }

@@ -14,8 +14,8 @@ use symdiff::{Builder, Formula, Scalar};
 
 use super::course::Points;
 use crate::grammar::{Reader, Span, SymbolTable};
-use crate::syntax::codes::Code;
 use crate::multibody::{Pair, Vector};
+use crate::syntax::codes::Code;
 
 /// Where two surfaces are to one another.
 #[derive(Clone, Copy, Debug)]
@@ -161,7 +161,12 @@ pub(in crate::elements) fn check_ends<S: SymbolTable>(reader: &mut Reader<'_, S>
 }
 
 /// Reports a block that is flat somewhere in the box of parameters.
-pub(in crate::elements) fn check_lengths<S: SymbolTable>(reader: &mut Reader<'_, S>, at: Span, key: &str, lengths: &[Formula; 3]) {
+pub(in crate::elements) fn check_lengths<S: SymbolTable>(
+    reader: &mut Reader<'_, S>,
+    at: Span,
+    key: &str,
+    lengths: &[Formula; 3],
+) {
     let needed = if reader.model.is_spatial() { 3 } else { 2 };
     for corner in 0..reader.corners.len() {
         let lengths = lengths[..needed].iter().map(|length| reader.evaluate(length, corner));

@@ -3,9 +3,9 @@
 use symdiff::{Binary, Formula};
 
 use crate::elements::effects::{Contact, ContactLine};
+use crate::elements::tuning::TUNING;
 use crate::elements::{Form, Shape, Surroundings};
 use crate::grammar::OfPlace;
-use crate::elements::tuning::TUNING;
 
 fn number(value: f64) -> Formula {
     Formula::number(value)

@@ -6,17 +6,17 @@ use std::rc::Rc;
 
 use symdiff::Scalar;
 
-use crate::elements::effects::Forces;
-use crate::elements::effects::laws::dry_friction::Resistance;
 use super::felt::Felt;
 use super::ground::Ground;
 use super::hull::Hull;
-use crate::elements::effects::laws::impact::Push;
 use super::outline::ContactEdges;
 use super::rod::Rod;
 use super::solid::{Gap, Solid};
-use crate::multibody::{Pair, Vector};
+use crate::elements::effects::Forces;
+use crate::elements::effects::laws::dry_friction::Resistance;
+use crate::elements::effects::laws::impact::Push;
 use crate::elements::tuning::TUNING;
+use crate::multibody::{Pair, Vector};
 
 /// Surface of the first body.
 pub enum ContactSurface<'g> {
@@ -43,7 +43,9 @@ impl<'g> ContactSurface<'g> {
             Self::Whole(WholeSurface::Solid(Solid::Capsule { start, tangent, length }, _)) => {
                 vec![line.nearest_to_line(pair, (start, tangent, length))]
             }
-            Self::Whole(WholeSurface::Solid(Solid::Block { half }, reach)) => vec![line.nearest_to_block(pair, half, reach)],
+            Self::Whole(WholeSurface::Solid(Solid::Block { half }, reach)) => {
+                vec![line.nearest_to_block(pair, half, reach)]
+            }
             Self::Whole(WholeSurface::Round(_)) => vec![line.nearest_to_point(pair, pair.first.point.position)],
             _ => line.ends(pair).to_vec(),
         }

@@ -16,13 +16,13 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 use schemars::{Schema, SchemaGenerator, json_schema};
 use symdiff::Builder;
 
+use crate::elements::tuning::TUNING;
 use crate::grammar::report::Fields;
 use crate::grammar::{Image, Node, Quantity, Reader, Span, SymbolTable, Value};
 use crate::multibody::Vector;
 use crate::syntax::codes::Code;
 use crate::syntax::suggest::clip;
 use crate::syntax::yaml;
-use crate::elements::tuning::TUNING;
 
 /// Coordinates of a node: displacements, then rotations.
 pub const OF_NODE: usize = 6;
@@ -290,7 +290,12 @@ fn list<'n, S: SymbolTable>(reader: &mut Reader<'_, S>, node: &'n Node, wanted: 
     match &node.value {
         yaml::Value::Sequence(items) if !items.is_empty() => Some(items),
         _ => {
-            reader.error(Code::WrongShape, node.span.clone(), format!("{wanted} belongs here, but here is {}", node.kind()), None);
+            reader.error(
+                Code::WrongShape,
+                node.span.clone(),
+                format!("{wanted} belongs here, but here is {}", node.kind()),
+                None,
+            );
             None
         }
     }
@@ -304,7 +309,12 @@ fn numbers<S: SymbolTable>(reader: &mut Reader<'_, S>, node: &Node) -> Option<Ve
         let Some(number) = scalar.text.parse::<f64>().ok().filter(|number| number.is_finite()) else {
             let help = "matrices are plain numbers in SI units; `mass` and `stiffness` of the effect may be uncertain"
                 .to_owned();
-            reader.error(Code::NotANumber, item.span.clone(), format!("`{}` is not a number", clip(&scalar.text)), help);
+            reader.error(
+                Code::NotANumber,
+                item.span.clone(),
+                format!("`{}` is not a number", clip(&scalar.text)),
+                help,
+            );
             return None;
         };
         found.push(number);

@@ -20,7 +20,6 @@
 pub(super) mod carried;
 pub mod matrices;
 
-
 use mbint_derive::Element;
 use symdiff::{Formula, Scalar};
 
@@ -29,8 +28,8 @@ use super::{ForceElement, Forces, ReducedInertia, TypedSensor};
 use crate::elements::Glyph;
 use crate::grammar::quantity::Dimension;
 use crate::grammar::{Checked, Fields, PointRef, Reader, Sensor, SymbolTable};
-use crate::syntax::codes::Code;
 use crate::multibody::{BuildError, Pair, RelativeDisplacement, Vector};
+use crate::syntax::codes::Code;
 
 /// A flexible body by its mass and stiffness matrices: by nodes and modes.
 #[derive(Clone, Debug, Element)]
