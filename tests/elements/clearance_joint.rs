@@ -101,6 +101,7 @@ fn a_loose_pin_converges_with_the_step() {
 
 /// The clearance is the uncertain parameter; the samples run in lockstep.
 #[test]
+#[ignore = "2 s"]
 fn the_clearance_may_be_uncertain() {
     let bounds = run(&loose(""));
     let x = output(&bounds, "x");

@@ -35,6 +35,7 @@ fn last(bounds: &Bounds, name: &str) -> f64 {
 
 /// On its face a cylinder stands on three points of its rim, by m g/3K.
 #[test]
+#[ignore = "2 s"]
 fn a_cylinder_stands_on_a_face() {
     for surface in [SLAB, SLAB_AS_HULL] {
         let bounds = on(surface, UPRIGHT, (OF_CYLINDER, 0.0), "body.x: 0.1, body.y: 0.05, body.z: 0.45", 1.0);
@@ -63,6 +64,7 @@ fn a_cylinder_rolls_on_a_face_and_on_a_bar() {
 
 /// A body that stands over an edge tips if its middle is beyond the edge.
 #[test]
+#[ignore = "3 s"]
 fn what_stands_over_an_edge_tips_beyond_its_middle() {
     let cube = "box: [0.2, 0.2, 0.5]";
     for (shape, inertia) in [(UPRIGHT, OF_CYLINDER), (cube, "[0.0483, 0.0483, 0.0133]")] {
@@ -83,6 +85,7 @@ fn what_stands_over_an_edge_tips_beyond_its_middle() {
 /// A box on a face carries its weight on four corners, as on a plane; flush with the block below, on the corners of
 /// both and on all edges that end there.
 #[test]
+#[ignore = "4 s"]
 fn a_box_stands_on_a_face() {
     let cube = "box: [0.196, 0.196, 0.196], radius: 2 mm";
     let inertia = "[0.0133, 0.0133, 0.0133]";
@@ -104,6 +107,7 @@ fn a_box_stands_on_a_face() {
 
 /// A plank across a beam rests on the four crossings of edges, and tips if its middle is beyond the beam.
 #[test]
+#[ignore = "4 s"]
 fn a_plank_lies_across_a_beam() {
     let plank = "box: [1, 0.2, 0.05], radius: 1 mm";
     let beam = "block: [0.3, 1.5, 0.398], rounding: 1 mm";
@@ -125,6 +129,7 @@ fn a_plank_lies_across_a_beam() {
 
 /// Three stacked boxes rest, and each carries the boxes above it.
 #[test]
+#[ignore = "6 s"]
 fn a_stack_rests() {
     let cube = "box: [0.3, 0.3, 0.2], radius: 1 mm";
     let on_cube = "block: [0.3, 0.3, 0.2], rounding: 1 mm";
@@ -155,6 +160,7 @@ simulation: {{ duration: 0.4, step: 1e-3, output_step: 0.1 }}
 /// A body that hits a surface at rest along a normal through its middle flies back as fast, and does not turn: an edge
 /// on an edge across it, a corner on the side of a cylinder, a corner on a corner, a box on a bar and on a ball.
 #[test]
+#[ignore = "2 s"]
 fn central_impacts_reverse_the_speed() {
     let cube = "box: [0.2, 0.2, 0.2], radius: 5 mm";
     let solid = "block: [0.4, 0.4, 0.4], rounding: 5 mm";
@@ -207,6 +213,7 @@ simulation: {{ duration: 0.02, step: 5e-6, output_step: 1e-4 }}
 
 /// A body that narrowly misses a corner goes straight on; one that touches it a little is as fast as before.
 #[test]
+#[ignore = "10 s"]
 fn a_corner_is_grazed() {
     for shape in ["cylinder: [[0, 0.02, -0.25], [0, 0.02, 0.25]], radius: 0.1", "box: [0.2, 0.2, 0.3], radius: 0"] {
         let flight = |depth: f64| {
@@ -234,6 +241,7 @@ simulation: {{ duration: 0.4, step: 2e-5, output_step: 0.01 }}
 
 /// Elastic bodies thrown askew at edges and corners keep their energy over all of their bounces.
 #[test]
+#[ignore = "7 s"]
 fn elastic_bodies_keep_their_energy() {
     for (shape, inertia) in [(UPRIGHT, OF_CYLINDER), ("box: [0.3, 0.2, 0.4], radius: 0.01", "[0.033, 0.042, 0.022]")] {
         for surface in [
@@ -264,6 +272,7 @@ simulation: {{ duration: 2.5, step: 1e-4, output_step: 1e-3 }}
 
 /// Through rims, sides, edges and corners the force has no jumps: its change over a step falls with the step.
 #[test]
+#[ignore = "10 s"]
 fn forces_are_continuous() {
     let starts = [
         "body.x: 0.35, body.y: -0.5, body.z: 0.15, body.vy: 1, body.omega: [1, 3, 7]",
@@ -306,6 +315,7 @@ simulation: {{ duration: 1, step: {step:e}, output_step: {step:e} }}
 
 /// While balls about both bodies are apart, no pair costs more than 40 instructions a step.
 #[test]
+#[ignore = "4 s"]
 fn what_is_far_costs_a_comparison() {
     let model = |effect: &str| {
         read(&format!(
@@ -342,6 +352,7 @@ simulation: {{ duration: 0.1, step: 1e-3 }}
 
 /// A mirrored instance has mirrored boxes, polyhedra and cylinders.
 #[test]
+#[ignore = "5 s"]
 fn an_image_moves_as_the_mirror_shows() {
     let rock =
         "hull: [[-0.3, -0.2, 0.2], [0.4, -0.1, 0.25], [0, 0.3, 0.3], [0.05, 0.05, 0.35], [0, 0, 0]], rounding: 0.02";

@@ -324,6 +324,7 @@ simulation: { duration: 0.01, step: 1e-4, output_step: 1e-3 }
 }
 
 #[test]
+#[ignore = "2 s"]
 fn where_it_ends_is_unknown_and_said() {
     // A ball falls into a centre that attracts it with k/x: the equations end there, at √(π/2) s = 1.253 s for k = 1.
     let (bounds, failure) = certify(read(

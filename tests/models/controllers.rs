@@ -6,6 +6,7 @@ use crate::common::{band, curve, largest, model, nominal, output, run};
 
 /// Masses that the controller knows: e = (e₀ + (ė₀ + 10 e₀) t) exp(−10 t) about a path, whatever the arm does.
 #[test]
+#[ignore = "2 s"]
 fn a_known_arm_under_computed_torque_is_two_double_lags() {
     let bounds = nominal(&model("computed_torque").tolerance(1e-9));
     for (name, start) in [("shoulder_error", -6.0_f64), ("elbow_error", 2.0)] {

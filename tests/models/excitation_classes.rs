@@ -90,6 +90,7 @@ fn the_worst_of_a_band_is_one_of_its_sines() {
 
 /// Limits that are written as if they moved are those that do not; all forces are 10 % larger if limits and rate are.
 #[test]
+#[ignore = "10 s"]
 fn limits_that_move_bound_functions_with_a_rate() {
     let end = |excitation: &str, further: &str| last_end(&run(&oscillator(excitation, further)).1, 0).0;
     let still = end("{ within: ± 3 N, rate: 20 N/s }", "");

@@ -107,6 +107,7 @@ fn apart(description: &Subject) -> f64 {
 }
 
 #[test]
+#[ignore = "2 s"]
 fn motions_and_reactions_are_those_of_absolute_coordinates() {
     for (first, second, initial, name) in ROWS {
         let description = row_of_three(first, second, initial);
@@ -228,6 +229,7 @@ fn instructions(description: &Subject) -> usize {
 
 /// Link by link: with its multiplier, each takes the same number of instructions.
 #[test]
+#[ignore = "2 s"]
 fn chains_on_balls_are_eliminated_link_by_link() {
     let [ten, twenty] = [10, 20].map(|links| instructions(&chain(links)) as f64);
     println!("{ten} {twenty}");

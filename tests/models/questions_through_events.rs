@@ -30,6 +30,7 @@ fn outputs_are_reduced_between_events() {
 /// A weight that is thrown up on a slack rope: about the height of the taut rope it moves as the elastic ball does.
 /// Against 100 000 products by the closed form. The stated errors hold with 95 %, twice as much with 99.99 %.
 #[test]
+#[ignore = "2 s"]
 fn statistics_go_through_events() {
     const PRODUCTS: usize = 100_000;
     let asked = format!("{ELASTIC}requirements: {{ slow: {{ that: ball.vy <= 0, at: 1.2 s }} }}\n");

@@ -235,6 +235,7 @@ fn statistics(text: &str) -> StatisticsResult {
 const MOTION: &str = "simulation: { duration: 4, step: 5e-3, output_step: 1 }";
 
 #[test]
+#[ignore = "2 s"]
 fn samples_have_the_law_of_an_oscillator_of_uncertain_stiffness() {
     let asked = format!("{MOTION}\nstatistics: {{ samples: 3000, quantiles: [50%, 99%] }}\n");
     let found = statistics(&oscillator("160 ± 40%", 0.0, &asked));
@@ -255,6 +256,7 @@ fn samples_have_the_law_of_an_oscillator_of_uncertain_stiffness() {
 }
 
 #[test]
+#[ignore = "2 s"]
 fn samples_have_the_stationary_law_of_duffings_oscillator() {
     // Fokker and Planck's equation: p(x) ~ exp(−4 c V/S), V = k x²/2 + a x⁴/4 (T. K. Caughey, J. Acoust. Soc. Am. 35
     // (1963) 1683).
@@ -286,6 +288,7 @@ statistics: {{ samples: 2048, quantiles: [50%], {exposure} seed: 3 }}
 }
 
 #[test]
+#[ignore = "2 s"]
 fn first_passages_are_those_of_rice() {
     let short = passage(4.0, "exposure: 6 s,");
     // Not more than it is above at first, and rises on average: ν⁺ = ω/(2π) exp(−L²/(2σ²)). Rises come in groups.

@@ -93,6 +93,7 @@ simulation: { duration: 1.2 s, step: 0.5 ms, output_step: 4 ms }
 ";
 
 #[test]
+#[ignore = "2 s"]
 fn a_damped_oscillator_overshoots_and_settles_as_its_closed_form() {
     let summary = summary(&read(OSCILLATOR));
     let x = |k: f64, c: f64, t: f64| {

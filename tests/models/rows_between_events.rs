@@ -120,6 +120,7 @@ bounds: { taylor: { order: 4 } }";
 /// A thin post, which a tenth of the speeds meets: 3 of 133 samples do, and no surface between the two parts of the box
 /// has them on its side. The truth is of the same method.
 #[test]
+#[ignore = "2 s"]
 fn a_part_that_few_samples_are_in_is_not_left_out() {
     let parameters = "v0: { interval: [14.54, 16.86] }, K0: { interval: [2478, 3522] }";
     let request = "

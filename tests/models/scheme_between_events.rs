@@ -35,6 +35,7 @@ fn is_by_scheme(summary: &Summary) -> bool {
 }
 
 #[test]
+#[ignore = "3 s"]
 fn a_scheme_that_is_asked_for_is_taken_between_events() {
     for (simulation, stated) in [
         ("step: 1e-3, scheme: hht", 2e-2),
@@ -53,6 +54,7 @@ fn a_scheme_that_is_asked_for_is_taken_between_events() {
 
 /// Halved steps have a quarter of the error.
 #[test]
+#[ignore = "7 s"]
 fn the_scheme_is_of_second_order_through_events() {
     let error = |step: &str| {
         let (bounds, _) =
@@ -88,6 +90,7 @@ fn a_stiff_body_bounces_as_a_rigid_one() {
 /// A door on a hinge in absolute coordinates, whose constraints the scheme holds, with a stop: as the explicit method
 /// has it in the angle.
 #[test]
+#[ignore = "4 s"]
 fn constraints_hold_through_events() {
     let door = |simulation: &str| {
         format!(

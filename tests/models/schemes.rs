@@ -284,6 +284,7 @@ fn reactions_of_the_trapezoidal_rule_alternate_and_never_come_to_rest() {
 }
 
 #[test]
+#[ignore = "2 s"]
 fn redundancy_and_singular_positions_are_passed_by_every_scheme() {
     // Three cranks on a bar, one constraint redundant, three times flat; two loops, three times on a line.
     let cranks = read(&parallelogram(3, 0.5, 0.0)).observing(&["c0.angle"]).rows_every(2.0);

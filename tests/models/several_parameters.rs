@@ -36,6 +36,7 @@ bounds: {{ tolerance: 1e-3 }}
 
 /// sin(ω t)/ω is largest and least within the box, not at its corners.
 #[test]
+#[ignore = "2 s"]
 fn ends_are_those_of_the_closed_form_with_statistics_and_without() {
     let (bounds, summary) = run("");
     let (with, _) = run("statistics: {}");

@@ -1,7 +1,7 @@
 //! Answers of the book's examples, as they were last reviewed: `snapshots/answers/`. Reduced outputs, verdicts,
 //! statistics and analyses of one configuration, in six digits, without errors.
 //!
-//! `INSTA_UPDATE=always cargo test --test models snapshots` takes changes over.
+//! `INSTA_UPDATE=always cargo test --test models snapshots -- --include-ignored` takes changes over.
 
 use std::fmt::Write;
 use std::path::Path;

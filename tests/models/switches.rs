@@ -78,6 +78,7 @@ fn no_sample_of_a_bouncing_ball_gains_energy() {
 /// step, so that the tolerance takes more steps than a sample may have. The truth there is known; the stated bounds are
 /// flagged.
 #[test]
+#[ignore = "2 s"]
 fn a_sample_beyond_the_tolerance_flags_what_follows() {
     let result = Model::from_yaml_str("brake", include_str!("../common/brake.yaml")).unwrap().study().run().unwrap();
     let held = result.outputs().next().unwrap();

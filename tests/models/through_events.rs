@@ -201,6 +201,7 @@ fn an_explicit_scheme_that_is_asked_for_is_taken() {
 
 /// A ball on a floor whose losses grow with the speed: it comes to rest, and rests for most of the time.
 #[test]
+#[ignore = "2 s"]
 fn a_ball_that_comes_to_rest_is_followed_to_the_end() {
     let text = BOUNCE.replace("value: 1, unit: m, tolerance: 2%", "value: 10, unit: m, tolerance: 1%");
     let text = text.replace("d: { value: 0.1, unit: s/m, tolerance: 5% }", "d: 0.5 s/m");
@@ -245,6 +246,7 @@ fn bounces_without_end_are_flagged_from_a_time() {
 
 /// Four parameters, of which the height matters most: terms are added where most is expected.
 #[test]
+#[ignore = "2 s"]
 fn four_parameters_take_few_simulations() {
     let text = BOUNCE.replace("tolerance: 2%", "tolerance: 5%").replace("mass: 1,", "mass: m,");
     let four = "K: { value: 1e5, unit: N/m, tolerance: 5% }, m: { value: 1, unit: kg, tolerance: 5% }, h0:";

@@ -60,6 +60,7 @@ fn over_throws(line: usize, t: f64) -> [f64; 2] {
 
 /// A part of the box meets the ceiling: it is divided where that is just grazed.
 #[test]
+#[ignore = "2 s"]
 fn a_box_is_divided_where_an_event_is_grazed() {
     let (bounds, summary) = run_methods(&read(CEILING), None);
     assert!(integrated(&summary, "chebyshev").0);
@@ -97,6 +98,7 @@ fn assert_throws(request: &str, method: Method) {
 
 /// Behind a grazed surface no jet follows.
 #[test]
+#[ignore = "2 s"]
 fn a_divided_box_has_taylor_bounds() {
     assert_throws("taylor: { order: 2 }", Method::Taylor);
 }

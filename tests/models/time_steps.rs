@@ -118,6 +118,7 @@ bounds: {{ scan: {{ points: 61 }} }}
 
 /// Forces whose period is that of a step, and half of it; with the coordinate in the phase too.
 #[test]
+#[ignore = "2 s"]
 fn a_force_with_the_period_of_a_step_is_seen() {
     let mut findings = Findings::default();
     for (hertz, phase) in [(500.0, "0.4"), (1000.0, "1.1"), (1000.0, "1.1 + 1e-9*block.x")] {

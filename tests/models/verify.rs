@@ -98,6 +98,7 @@ fn effects_keep_take_or_put_in_energy() {
 }
 
 #[test]
+#[ignore = "2 s"]
 fn powers_are_balanced_in_every_formulation() {
     // Joints of several axes, rolling, gear teeth, states, and contacts that open.
     for name in
@@ -117,6 +118,7 @@ fn powers_are_balanced_in_every_formulation() {
 
 /// Symbolic derivatives, the Newton matrix with and without links, jets and adjoints are those of differences.
 #[test]
+#[ignore = "4 s"]
 fn derivatives_are_those_of_differences() {
     for name in ["slider_crank.yaml", "humanoid.yaml", "coin.yaml", "held_arm.yaml", "quarter_car.yaml"] {
         let found = of_model(name);

@@ -144,6 +144,7 @@ fn check(question: &str, cell: &str, analysis: &Analysis, column: usize) {
 }
 
 #[test]
+#[ignore = "4 s"]
 fn every_question_is_answered_as_the_table_says() {
     let table = table();
     assert_eq!(table.len(), 7);

@@ -103,6 +103,7 @@ fn bad_models_are_reported_in_their_places() {
 }
 
 #[test]
+#[ignore = "2 s"]
 fn every_bad_model_renders() {
     for path in bad_models() {
         let diagnostics = told(Model::from_file(&path));
@@ -203,6 +204,7 @@ fn files_that_are_no_models_are_refused() {
 }
 
 #[test]
+#[ignore = "8 s"]
 fn all_errors_of_a_large_file_are_counted() {
     let mut text = "bodies: { b: { mass: 1, coordinates: [x] } }\noutputs: { x: b.x }\n".to_owned();
     text += "simulation: { duration: 1 }\nparameters:\n";

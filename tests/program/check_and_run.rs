@@ -28,6 +28,7 @@ fn begins(model: &Model) -> Result<(), Error> {
 }
 
 #[test]
+#[ignore = "5 s"]
 fn both_refuse_the_same_models_with_the_same_words() {
     let place = Place::new();
     let mut refused = 0;
@@ -49,6 +50,7 @@ fn both_refuse_the_same_models_with_the_same_words() {
 }
 
 #[test]
+#[ignore = "5 s"]
 fn both_accept_the_same_models() {
     for path in files("models").into_iter().chain(files("docs/examples")) {
         let shown = path.display();

@@ -97,6 +97,7 @@ fn as_json(text: &str) -> Option<serde_json::Value> {
 
 /// The reader refuses everything that the schema refuses; the list has the bad models that only the reader refuses.
 #[test]
+#[ignore = "2 s"]
 fn only_semantics_is_beyond_the_schema() {
     let validator = validator();
     let mut list = String::new();
@@ -125,6 +126,7 @@ fn only_semantics_is_beyond_the_schema() {
 
 /// Every value of every model is replaced by possible mistakes: where the schema refuses, the reader does.
 #[test]
+#[ignore = "10 s"]
 fn the_schema_refuses_nothing_that_can_be_read() {
     let validator = validator();
     let others = ["-1", "0", "0.5", "2", "\"-3 m\"", "text", "[1, 2]", "{}", "-0.05"];

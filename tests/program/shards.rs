@@ -66,6 +66,7 @@ fn finish(place: &Place, study: &str, status: i32) -> usize {
 
 /// Shards have samples only: merging them proves, and writes the same certificate. The tension is unknown at first.
 #[test]
+#[ignore = "2 s"]
 fn merged_shards_have_the_certificate_of_a_run() {
     let place = Place::new();
     fs::write(place.path().join("pendulum.yaml"), PENDULUM).unwrap();
@@ -230,6 +231,7 @@ statistics: {}
 ";
 
 #[test]
+#[ignore = "2 s"]
 fn merged_verdicts_of_parts_are_those_of_the_run() {
     let place = Place::new();
     fs::write(place.path().join("apart.yaml"), APART).unwrap();
@@ -258,6 +260,7 @@ statistics: { samples: 1024 }
 ";
 
 #[test]
+#[ignore = "10 s"]
 fn merged_bounds_through_events_are_those_of_the_run() {
     let place = Place::new();
     fs::write(place.path().join("ceiling.yaml"), CEILING).unwrap();
@@ -346,6 +349,7 @@ fn a_killed_run_leaves_nothing_behind_the_next_one() {
 }
 
 #[test]
+#[ignore = "2 s"]
 fn the_disk_that_a_store_takes_is_reported_before() {
     let place = Place::new();
     fs::write(place.path().join("thrown.yaml"), THROWN).unwrap();
@@ -369,6 +373,7 @@ fn the_disk_that_a_store_takes_is_reported_before() {
 
 /// A rod that is shorter than the height of its crank's end reaches no block.
 #[test]
+#[ignore = "2 s"]
 fn what_cannot_be_assembled_is_left_out_of_shards_too() {
     let place = Place::new();
     let text = "

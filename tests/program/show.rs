@@ -127,6 +127,7 @@ simulation: { duration: 0.1, step: 1e-3, output_step: 0.1 }
 }
 
 #[test]
+#[ignore = "2 s"]
 fn every_shipped_model_can_be_shown() {
     let models = Path::new(env!("CARGO_MANIFEST_DIR")).join("models");
     let place = Place::new();

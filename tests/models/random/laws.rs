@@ -76,6 +76,7 @@ fn power(mechanism: &Mechanism) -> String {
 
 /// Stored = put in − dissipated, to second order.
 #[test]
+#[ignore = "3 s"]
 fn energy_is_balanced() {
     let driven = |kind: Kind| Kind { driven: true, ..kind };
     let looped = Kind { looped: true, ..PLANAR };
@@ -148,6 +149,7 @@ fn momentum_is_conserved() {
 
 /// Joints stay closed to Newton's tolerance.
 #[test]
+#[ignore = "2 s"]
 fn joints_stay_closed() {
     let looped = |kind: Kind| Kind { looped: true, ..kind };
     holds(&[PLANAR, SPATIAL, looped(PLANAR), looped(SPATIAL)], |mechanism| {
@@ -176,6 +178,7 @@ fn joints_stay_closed() {
 
 /// A mechanism that is turned and shifted with all that acts on it moves the same.
 #[test]
+#[ignore = "3 s"]
 fn motion_does_not_depend_on_the_scene() {
     let looped = |kind: Kind| Kind { looped: true, ..kind };
     let floating = |kind: Kind| Kind { floating: true, ..kind };
@@ -217,6 +220,7 @@ fn is_apart_by_steps(mechanism: &Mechanism, apart: impl Fn(f64) -> f64) -> Resul
 
 /// Motion does not depend on the names of bodies and the order in which they are written, either.
 #[test]
+#[ignore = "2 s"]
 fn motion_does_not_depend_on_names_and_order() {
     let looped = |kind: Kind| Kind { looped: true, ..kind };
     let kinds = [PLANAR, SPATIAL, looped(PLANAR), looped(SPATIAL), Kind { driven: true, ..SPATIAL }];

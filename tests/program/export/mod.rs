@@ -40,6 +40,7 @@ fn columns(text: &str) -> Vec<(String, Vec<f64>)> {
 }
 
 #[test]
+#[ignore = "15 s"]
 fn c_repeats_the_nominal_motion() {
     let place = Place::new();
     for name in MODELS {
@@ -108,6 +109,7 @@ int main(int count, char **given)
 "#;
 
 #[test]
+#[ignore = "2 s"]
 fn a_unit_repeats_the_nominal_motion() {
     let place = Place::new();
     for name in ["slider_crank", "car_axis", "andrews"] {
@@ -174,6 +176,7 @@ int main(int count, char **given)
 
 /// At the upper ends of all parameters the C is that of `mbint sample`: linkages are assembled anew.
 #[test]
+#[ignore = "2 s"]
 fn a_start_of_other_parameters_is_that_of_a_sample() {
     let place = Place::new();
     for name in ["slider_crank", "four_bars", "car_axis", "andrews"] {
@@ -215,6 +218,7 @@ fn a_start_of_other_parameters_is_that_of_a_sample() {
 
 /// A force that changes from row to row moves a mass by parabolas, whatever steps it takes.
 #[test]
+#[ignore = "2 s"]
 fn inputs_change_forces_during_the_motion() {
     let place = Place::new();
     let model = "model: mass

@@ -45,6 +45,7 @@ pub(super) fn interrupted(place: &Place, arguments: &str, stage: &str, name: &st
 }
 
 #[test]
+#[ignore = "5 s"]
 fn what_is_finished_at_a_ctrl_c_is_written() {
     let place = Place::new();
     long(&place);
@@ -79,6 +80,7 @@ fn a_study_of_costs_ends_at_a_ctrl_c() {
 
 /// Compiling a long chain takes many seconds, and ends when it is asked to.
 #[test]
+#[ignore = "2 s"]
 fn compiling_ends_at_a_ctrl_c() {
     let place = Place::new();
     let mut text = "bodies:\n".to_owned();
@@ -119,6 +121,7 @@ fn quantiles(place: &Place) {
 
 /// Statistics are a stage of their own after the bounds, which are written.
 #[test]
+#[ignore = "5 s"]
 fn statistics_end_at_a_sigterm() {
     let place = Place::new();
     quantiles(&place);
@@ -174,6 +177,7 @@ fn a_second_ctrl_c_does_not_wait() {
 
 /// Killed at any moment, a run leaves whole files or none; the next one works.
 #[test]
+#[ignore = "2 s"]
 fn a_killed_run_leaves_nothing_half() {
     let place = Place::new();
     place.model("crank");

@@ -49,6 +49,7 @@ fn memory_of_requirements_is_linear() {
 
 /// Statistics hold the samples of few requirements at once: 50 took 168 MB, 100 took 297.
 #[test]
+#[ignore = "2 s"]
 fn memory_of_statistics_does_not_grow_with_requirements() {
     let place = Place::new();
     let limits: Vec<String> = (0..50).map(|n| format!("r{n}: {} < {} m", ["x", "2*x"][n % 2], n + 5)).collect();

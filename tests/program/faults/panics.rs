@@ -67,6 +67,7 @@ fn a_panic_before_the_methods_costs_one_subsystem_of_them() {
 /// A crank whose rod is a beam, in steps that are much too long: its loop opens in the run. The start's conditions of
 /// the beam are no constraints then.
 #[test]
+#[ignore = "2 s"]
 fn a_constraint_that_opens_beside_a_beam_is_named() {
     let place = Place::new();
     for (speed, step) in [("3e5", "5e-5"), ("9e5", "2e-5"), ("220", "2e-3")] {

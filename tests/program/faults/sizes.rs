@@ -55,6 +55,7 @@ fn long_chains_swing_and_keep_their_energy() {
 
 /// A file of this size is read and assembled.
 #[test]
+#[ignore = "7 s"]
 fn ten_thousand_bodies_are_counted() {
     let model = chain(if cfg!(debug_assertions) { 2000 } else { 10_000 }, 1e-3);
     let simulator = study::prepare(model.study().description()).unwrap();

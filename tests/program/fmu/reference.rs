@@ -243,6 +243,7 @@ fn bounds_of(unit: &Unit, version: u32, variables: &str, model: &str) -> String 
 
 /// Stairs end their motion with the last row, by events whose times are known before.
 #[test]
+#[ignore = "2 s"]
 fn stairs_go_up_once_a_second() {
     for (version, interface) in
         [(2, "model_exchange"), (3, "model_exchange"), (2, "co_simulation"), (3, "co_simulation")]
@@ -266,6 +267,7 @@ simulation: {{ duration: 10, output_step: 0.5 }}
 
 /// Inputs come out as outputs, in each type that is one number; texts are not requested.
 #[test]
+#[ignore = "2 s"]
 fn inputs_of_all_types_are_outputs() {
     let kinds = ["Int8", "UInt8", "Int16", "UInt16", "Int32", "UInt32", "Int64", "UInt64", "Enumeration"];
     for (version, kind) in kinds.map(|kind| (3, kind)).into_iter().chain([(2, "Int32"), (2, "Enumeration")]) {

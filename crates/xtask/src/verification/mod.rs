@@ -184,7 +184,9 @@ fn measure_claim(root: &Path, built: &Built, claim: &Claim, options: &Options) -
                 )
             }
             Source::Tests { binary, filter, .. } => built.run(root, binary, filter, &environment),
-            Source::Modules { binary, filter, .. } => built.run_modules(root, claim.name, binary, filter),
+            Source::Modules { binary, filter, skipped, .. } => {
+                built.run_modules(root, claim.name, binary, filter, skipped)
+            }
             Source::VerifiedModels => run_program::verified_models(root, &built.program, claim.name, options.quick),
             Source::SameBytes => run_program::same_bytes(root, &built.program, claim.name, options.quick),
             Source::Peers => peers::peers(root, claim.name, options.quick),
