@@ -48,10 +48,10 @@ mod tests {
             between *       Two bodies (their angles about z) or two joints.
             ratio *         Angle of the second per angle of the first; negative for external gears.
             offset          Angle of the second where that of the first is zero, rad; by default 0.
-            pressure_angle  Of the teeth across their direction, e.g. `20 deg`: then bearings feel the teeth, rad; by default the torque alone is known, and bearings that the teeth push on have no known reactions.
-            helix_angle     Of the first gear's teeth against its axis, or of a bevel gear's against the cone; positive for a right-handed gear, rad; by default 0.
+            pressure_angle  Pressure angle of the teeth across their direction, e.g. `20 deg`; with it, bearings feel the teeth, rad; by default the torque alone is known, and bearings that the teeth push on have no known reactions.
+            helix_angle     Helix angle: of the first gear's teeth against its axis, or of a bevel gear's against the cone; positive for a right-handed gear, rad; by default 0.
             face            Where the middle of the teeth is along the first joint's axis, from that joint's point; of parallel axes, m; by default 0.
-            cone_distance   From the point where the axes intersect to the middle of the teeth of bevel gears, m.
+            cone_distance   Distance from the point where the axes intersect to the middle of the teeth of bevel gears, m.
           Constraints and their multipliers:
             its constraint, rad  λ: N m: −λ is the torque on the second, +ratio λ that on the first
         ");

@@ -116,24 +116,20 @@ export class Movie {
       for (let term = 0; term < terms.length; term++) value += terms[term] * all[place * terms.length + term];
       return value;
     };
-    const [point, body, event] = [this.polynomials.points, this.polynomials.bodies, this.polynomials.eventDeviations].map(sum);
-    const events = Array.from(this.polynomials.events, (nominal, place) => nominal + event(place));
+    const { events, eventDeviations, bodies, points } = this.polynomials;
+    const [point, body, event] = [points, bodies, eventDeviations].map(sum);
     const nominal = this.onLines(time, (place) => this.bodies[place]);
-    const own = this.onLines(this.nominalTime(time, events), (place) => this.bodies[place] + body(place));
-    const pose = own.map((value, line) => nominal[line] + this.exaggeration * (value - nominal[line]));
-    return { pose, points: this.points.map((value, place) => value + this.exaggeration * point(place)) };
+    const own = this.onLines(this.nominalTime(time, Array.from(events, (at, place) => at + event(place))), (place) => this.bodies[place] + body(place));
+    return { pose: own.map((value, line) => nominal[line] + this.exaggeration * (value - nominal[line])), points: this.points.map((value, place) => value + this.exaggeration * point(place)) };
   }
 
   /** The nominal motion's time that belongs to a time of a motion with these events: linear from event to event. @param {number} time @param {number[]} events */
   nominalTime(time, events) {
-    const nominal = this.polynomials ? this.polynomials.events : [];
-    if (events.length === 0) return time;
-    let next = 0;
-    while (next < events.length && events[next] <= time) next += 1;
-    const end = (/** @type {ArrayLike<number>} */ times, /** @type {number} */ place) => (place < 0 ? 0 : place < times.length ? times[place] : this.duration);
-    const [begin, length] = [end(events, next - 1), end(events, next) - end(events, next - 1)];
-    const share = length > 0 ? Math.min(1, (time - begin) / length) : 0;
-    return end(nominal, next - 1) + share * (end(nominal, next) - end(nominal, next - 1));
+    const [from, to] = [events, this.polynomials?.events || []].map((times) => [0, ...times, this.duration]);
+    let next = 1;
+    while (next <= events.length && from[next] <= time) next += 1;
+    const share = (time - from[next - 1]) / (from[next] - from[next - 1]) || 0;
+    return to[next - 1] + Math.min(1, share) * (to[next] - to[next - 1]);
   }
 
   /** Where a body is, the ground being 0. @param {Float64Array} pose @param {number} body @returns {{p: number[], q: number[]}} */

@@ -157,9 +157,9 @@ mod tests {
 
     #[test]
     fn poses_are_on_lines_between_rows() {
-        let (times, rows) = ([0.0, 0.1, 0.3], [0.0, 1.0, 2.0, 3.0, 4.0, 9.0]);
-        assert_eq!(pose_at(&times, &rows, 2, 0.1), [2.0, 3.0]);
-        assert_eq!(pose_at(&times, &rows, 2, 0.2), [3.0, 6.0]);
-        assert_eq!(pose_at(&times, &rows, 2, 0.4), [4.0, 9.0]);
+        let (times, rows) = ([0.0, 0.5, 1.5], [0.0, 1.0, 2.0, 3.0, 4.0, 9.0]);
+        assert_eq!(pose_at(&times, &rows, 2, 0.5), [2.0, 3.0]);
+        assert_eq!(pose_at(&times, &rows, 2, 1.0), [3.0, 6.0]);
+        assert_eq!(pose_at(&times, &rows, 2, 2.0), [4.0, 9.0]);
     }
 }
