@@ -96,7 +96,7 @@ fn overview(found: &Allocation) -> String {
         text += "  there are too many grades to try all: cheaper ones may exist\n";
     }
     if found.tolerances.iter().any(|own| own.at_widest && own.grade.is_none()) {
-        text += "  *: as loose as was looked for; --widest looks further\n";
+        text += "  *: as loose as the search allows; --widest extends it\n";
     }
     text += "\n";
     if !found.requirements.is_empty() && found.criterion == Criterion::WorstCase {

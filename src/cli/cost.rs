@@ -66,13 +66,13 @@ fn overview(study: &CostStudy, folder: &Path, files: &[PathBuf]) -> String {
     text += "  Settings on each method's front; * on the front of all methods; ≤ below the reference's own error.\n";
     text += match study.is_deterministic() {
         false => {
-            "  Errors are relative to the largest width of an output's bounds; too narrow: the part of the range left out.\n"
+            "  Errors are relative to the largest width of an output's bounds; too narrow: the missing part of the range.\n"
         }
         true => "  Errors are relative to the range of an output's course.\n",
     };
     text += &reference(study);
     for left_out in &study.left_out {
-        text += &format!("  left out: {left_out}\n");
+        text += &format!("  omitted: {left_out}\n");
     }
     if study.has_reference() {
         text += &format!(
@@ -235,7 +235,7 @@ fn choice(study: &CostStudy) -> String {
             let nearest = format!("No setting meets {wanted:e}; the nearest is {}.", described(point));
             // Among the settings that were not run, costlier ones are nearer.
             match study.left_out.iter().any(|left_out| left_out.contains("budget")) {
-                true => format!("{nearest} Others were left out: {more} allows them."),
+                true => format!("{nearest} Others were omitted: {more} allows them."),
                 false => format!(
                     "{nearest} `bounds: {{ tolerance: {wanted:e} }}` in the model divides boxes and steps until it is met."
                 ),
@@ -326,9 +326,9 @@ mod tests {
             HHT-I3, α = −0.1  3.333e-4 s   6000   2.0e-3  2.0e-5
 
           Settings on each method's front; * on the front of all methods; ≤ below the reference's own error.
-          Errors are relative to the largest width of an output's bounds; too narrow: the part of the range left out.
+          Errors are relative to the largest width of an output's bounds; too narrow: the missing part of the range.
           reference: Chebyshev, composed of order 16, steps of 1e-4 s and 2e-4 s; its own error 1.0e-5 (steps 1.0e-6, order 16 for 14 9.0e-6), of the trajectory 1.0e-6
-          left out: Scan: 3 of its settings, which the budget of 60 s does not allow
+          omitted: Scan: 3 of its settings, which the budget of 60 s does not allow
           took 40.0 s of 60 s, 10.0 s of it for the reference
 
         The cheapest setting within 1e-3 is Chebyshev, composed of order 5, steps of 1e-3 s: 36 simulations in 25.0 ms, too wide by 4.0e-4, too narrow by ≤ 1.0e-5.
@@ -341,7 +341,7 @@ mod tests {
         let at = |tolerance| choice(&CostStudy { tolerance, ..study() });
         insta::assert_snapshot!([at(3e-3), at(1e-4), at(1e-5)].join("\n"), @r"
         The cheapest setting within 3e-3 is Scan with 5 points per parameter, steps of 1e-3 s: 36 simulations in 10.0 ms, too wide by 0, too narrow by 2.0e-3.
-        No setting meets 1e-4; the nearest is Chebyshev, composed of order 5, steps of 1e-3 s: 36 simulations in 25.0 ms, too wide by 4.0e-4, too narrow by ≤ 1.0e-5. Others were left out: --budget 240 allows them.
+        No setting meets 1e-4; the nearest is Chebyshev, composed of order 5, steps of 1e-3 s: 36 simulations in 25.0 ms, too wide by 4.0e-4, too narrow by ≤ 1.0e-5. Others were omitted: --budget 240 allows them.
         No setting can be compared at 1e-5: the reference's own error is 1.0e-5. --budget 240 allows a finer one, and --tolerance 2e-5 can be asked for now. The nearest is Chebyshev, composed of order 5, steps of 1e-3 s: 36 simulations in 25.0 ms, too wide by 4.0e-4, too narrow by ≤ 1.0e-5.
         ");
     }

@@ -123,7 +123,7 @@ mod tests {
             impact *           How it pushes back.
               exponent         n, from 1 to 3: 1 is a linear spring, 1.5 Hertz's contact of curved surfaces; by default 1.5.
               stiffness *      K, N/m^n or N*m/rad^n.
-              dissipation      χ, the loss coefficient, s/m or s/rad; by default 0: nothing is lost.
+              dissipation      χ, the loss coefficient, s/m or s/rad; by default 0: no energy is lost.
               restitution      Instead of `dissipation`: speed after over speed before, above 0 and at most 1.
               impact_velocity  Speed of the impact for which the restitution holds, m/s or rad/s.
               law              Whose formula makes dissipation of restitution; by default exact.

@@ -88,7 +88,7 @@ fn text(explanation: &Explanation) -> String {
         section("outputs of reactions that are not unique".into(), list(&e.undetermined_outputs));
     }
     if !e.shared_start.is_empty() {
-        section("coordinates that share what the model leaves open of the start".into(), list(&e.shared_start));
+        section("coordinates that share the start's undetermined part".into(), list(&e.shared_start));
     }
     if !e.singular_at_start.is_empty() {
         section("constraints that lose their independence at the start only".into(), list(&e.singular_at_start));
@@ -114,7 +114,7 @@ fn text(explanation: &Explanation) -> String {
     for item in &e.left_out {
         left_out.row([item.what.clone(), item.why.clone()]);
     }
-    let heading = if e.left_out.is_empty() { "nothing left out" } else { "left out" };
+    let heading = if e.left_out.is_empty() { "nothing omitted" } else { "omitted" };
     section(heading.to_owned(), left_out.render(2));
     if !e.decisions.is_empty() {
         section("saved".to_owned(), decisions(&e.decisions));
@@ -283,7 +283,7 @@ mod tests {
           pivots (row, column)
             (0, 7), (7, 0)
 
-        left out
+        omitted
           parameter m4  nothing depends on it
 
         saved

@@ -167,7 +167,7 @@ pub(super) fn report(done: &Done, console: &Console) {
         if done.folder.to_string_lossy().ends_with(".interrupted") {
             let folder = done.folder.display();
             console.warning(&format!(
-                "{name}: the older results are kept; what there is of this run is in {folder} (--overwrite replaces them)"
+                "{name}: the older results are kept; the results of this run so far are in {folder} (--overwrite replaces them)"
             ));
         }
         return;

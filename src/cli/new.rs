@@ -43,7 +43,7 @@ pub(super) fn new(args: &NewArgs, console: &mut Console) -> Result<Status, Failu
             return wrong(format!("cannot write {path}: {error}"));
         }
     }
-    let editor = "for completion in an editor, beside the model: mbint schema > mbint.schema.json";
+    let editor = "for completion in an editor, next to the model: mbint schema > mbint.schema.json";
     console.print(&format!("{path}\nnext: mbint run {path}\n{editor}\n"))?;
     Ok(Status::Done)
 }

@@ -40,7 +40,7 @@ impl Status {
             Self::Wrong => (
                 2,
                 "the command or a model has errors, and nothing was run; or a run was refused because it would take long",
-                "nothing is written for it",
+                "no files are written for it",
             ),
             Self::Unresolved => (
                 3,
@@ -49,7 +49,7 @@ impl Status {
             ),
             Self::NotMet => (
                 4,
-                "what was to hold does not: a requirement is violated; with `mbint fit`, no parameters agree with all rows; with `mbint design`, no values meet the requirements; with `mbint verify`, errors do not fall as theory tells; with `mbint verify-certificate`, a bound does not follow; with `mbint snapshot --check`, a bound is not as it was recorded, or nothing is recorded",
+                "a condition does not hold: a requirement is violated; with `mbint fit`, no parameters agree with all rows; with `mbint design`, no values meet the requirements; with `mbint verify`, errors do not fall as theory tells; with `mbint verify-certificate`, a bound does not follow; with `mbint snapshot --check`, a bound is not as it was recorded, or nothing is recorded",
                 "all results; `mbint snapshot --check` writes nothing",
             ),
             // EX_TEMPFAIL of sysexits.h.

@@ -14,7 +14,7 @@ pub(super) fn of(model: &Description) -> String {
         let indent = "  ".repeat(link.depth + 1);
         let joint = link.joint.as_ref().map_or_else(String::new, joint);
         let mass = link.mass.map_or_else(String::new, |mass| format!(", {mass} kg"));
-        let left_out = if link.place.is_none() { ", left out" } else { "" };
+        let left_out = if link.place.is_none() { ", omitted" } else { "" };
         // Writing to a `String` does not fail.
         let _ = writeln!(text, "{indent}{}{mass}{left_out}{joint}{}", link.name, uncertain(model, link));
     }

@@ -295,7 +295,7 @@ fn every_decision_is_explained_with_what_it_saves() {
     let alone = |one: &Sections| -> usize { instructions(&one.model())[2..6].iter().sum() };
     assert_eq!(saves("a moves on its own"), (251 - 11) * alone(&a) as i64);
     assert_eq!(saves("c moves on its own"), (251 - 1) * alone(&c) as i64);
-    assert!(saves("no output names them") > 0 && saves("once a sample") > 0, "{:#?}", explanation.decisions);
+    assert!(saves("no output uses") > 0 && saves("once a sample") > 0, "{:#?}", explanation.decisions);
     assert!(find("folded into the instructions").saves.is_some());
     assert!(explanation.coordinates.iter().all(|name| !name.starts_with("idle")), "{:?}", explanation.coordinates);
     let left_out =

@@ -253,7 +253,7 @@ fn a_link_without_mass_at_the_end_is_left_out() {
     let description = files.model(GRAVITY);
     let records = description.model.warnings().records();
     assert_eq!(records.len(), 1);
-    assert_eq!(records[0].message, "link `tip` moves, but has no mass: it is left out, with its joint `end`");
+    assert_eq!(records[0].message, "link `tip` moves, but has no mass: it is omitted, with its joint `end`");
     assert_eq!(nominal(&description).outputs.len(), 1);
 }
 

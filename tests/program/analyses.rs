@@ -171,7 +171,7 @@ fn results_that_an_analysis_does_not_find_are_refused_with_those_that_it_does() 
     for command in ["check asked.yaml", "run asked.yaml -o out"] {
         let (_, error) = place.run(command, 2);
         assert!(
-            error.contains("`mode3.frequency` is none of the results") && error.contains("`mode1.frequency`"),
+            error.contains("this analysis has no result `mode3.frequency`") && error.contains("`mode1.frequency`"),
             "{error}"
         );
     }

@@ -176,7 +176,7 @@ fn without_uncertainty_or_time_only_the_schemes_are_compared() {
     fs::write(place.path().join("uncertain.yaml"), OSCILLATOR).unwrap();
     let (text, status) = run("cost uncertain.yaml --budget 1e-6 --tolerance 0.9");
     assert_eq!(status, Some(0), "{text}");
-    for line in ["left out: Taylor: 18 of its settings", "No setting was finished"] {
+    for line in ["omitted: Taylor: 18 of its settings", "No setting was finished"] {
         assert!(text.contains(line), "{line} in\n{text}");
     }
     for wrong in ["cost", "cost missing.yaml", "cost certain.yaml --budget 0", "cost certain.yaml --tolerance=-1"] {

@@ -255,7 +255,7 @@ error[E0401]: unknown joint `wrist`
 41 | scenes: { open: { without: [wrist, x] } }
    |           ---- in this scene
    |
-   = help: `wrist` is left out here: leave this out too, or put `wrist` in
+   = help: `wrist` is omitted here: omit this too, or put `wrist` in
 ";
     assert_eq!(report.render(false), expected);
 }

@@ -119,7 +119,7 @@ fn what_is_missing_is_reported() {
     // The model has changed.
     fs::write(place.path().join("pendulum.yaml"), PENDULUM.replace("value: 1,", "value: 1.1,")).unwrap();
     let (_, errors) = place.run("shard study --index 0", 1);
-    assert!(errors.contains("the model is not what it was when the study was planned; plan it again"), "{errors}");
+    assert!(errors.contains("the model has changed since the study was planned; plan it again"), "{errors}");
 }
 
 #[test]
@@ -307,7 +307,7 @@ assemblies:
         for (file, text) in files.iter().filter(|(file, _)| file == name) {
             write(file, &text.replace(changed, &changed.replace('1', "2")));
             let (_, errors) = place.run("shard study0 --index 0", 1);
-            assert!(errors.contains("the model is not what it was when the study was planned"), "{name}: {errors}");
+            assert!(errors.contains("the model has changed since the study was planned"), "{name}: {errors}");
         }
         place.run(&format!("plan thrown.yaml -o study{number} --at-once 0"), 0);
         let own = parts(&place, &format!("study{number}"));

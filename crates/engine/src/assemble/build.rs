@@ -226,7 +226,7 @@ fn apply_effects<'g>(
         m.thrusts.push(applied.thrusts().to_vec());
         let forces = applied.coordinates_touched(m);
         if forces == 0 && effect.kind.states().is_empty() {
-            let why = "it moves nothing: it is zero, or acts on what is held".to_owned();
+            let why = "it has no effect: its force is zero, or acts only on prescribed coordinates".to_owned();
             left_out.push(Omission { what: format!("effect {}", effect.name), why });
         }
         let (name, kind) = (effect.name.clone(), effect.kind.keyword());

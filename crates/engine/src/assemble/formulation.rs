@@ -93,7 +93,7 @@ impl Mechanism<'_, '_> {
         let coupling = d.joints.iter().find(|joint| acts_on_bodies(&joint.kind))?;
         let joint = reaction(self.questions.outputs.iter().map(|output| &output.formula).collect())?;
         Some(format!(
-            "an output is the reaction of joint `{joint}`, which has no multiplier in joint coordinates, and what `{}` adds to it is not known",
+            "an output is the reaction of joint `{joint}`, which has no multiplier in joint coordinates, and the contribution of `{}` to it is unknown",
             coupling.name
         ))
     }

@@ -123,7 +123,7 @@ pub enum SimulationError {
         coordinates: Vec<String>,
     },
     /// A requirement names a result that the analysis does not have.
-    #[error("`{name}` is none of the results of this analysis, which are {known}")]
+    #[error("this analysis has no result `{name}`; it has {known}")]
     NoResult {
         /// The name.
         name: String,

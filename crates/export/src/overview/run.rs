@@ -63,7 +63,7 @@ fn analysis(analysis: &AnalysisSummary) -> String {
                 format!("indifferent: {} may have other values as well", named(&analysis.indifferent))
             }
             smallest if smallest < 0.0 => format!("unstable: it is left like exp({:.3e} t / s)", (-smallest).sqrt()),
-            f64::INFINITY => "held by constraints alone: nothing can move".to_owned(),
+            f64::INFINITY => "fixed by constraints alone: nothing can move".to_owned(),
             smallest => format!("stable: the slowest motion about it has {:.3e} rad/s", smallest.sqrt()),
         };
         text += &format!("  the nominal equilibrium is {is}\n\n");
@@ -76,7 +76,7 @@ fn analysis(analysis: &AnalysisSummary) -> String {
                 format!("stable nominally, but not over the tolerances: a mode may grow like exp({most:.3e} t / s)")
             }
             (0.0, _) => "on the limit of stability: a mode neither decays nor grows".to_owned(),
-            (nominal, _) => format!("stable: what decays slowest does so like exp({nominal:.3e} t / s)"),
+            (nominal, _) => format!("stable: the slowest mode decays like exp({nominal:.3e} t / s)"),
         };
         text += &format!("  {is}\n\n");
     }

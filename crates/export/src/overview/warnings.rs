@@ -27,7 +27,7 @@ impl Warning {
 pub fn warnings(bounds: &Bounds, summary: &Summary) -> Vec<Warning> {
     let beyond = summary.beyond_tolerance.map(|ratio| {
         format!(
-            "the local errors of a sample's steps add up to {ratio:.3e} times the tolerance: what needs that sample is unreliable"
+            "the local errors of a sample's steps add up to {ratio:.3e} times the tolerance: results that need this sample are unreliable"
         )
     });
     let deep = summary.too_deep.as_ref().map(too_deep);
@@ -73,7 +73,7 @@ fn unreliable(summary: &Summary) -> Option<String> {
     } else if summary.events_followed.as_ref().is_some_and(|events| events.until <= *from) {
         "events are not followed further: narrow the intervals, or shorten the duration"
     } else if summary.passed_force.is_some_and(is_cause) {
-        "fixed steps pass over what a force does in time or space: shorten the step, or let `simulation: { tolerance: … }` choose it"
+        "fixed steps pass over changes of a force in time or space: shorten the step, or let `simulation: { tolerance: … }` choose it"
     } else {
         "raise the order, shorten the step, or set `bounds: { tolerance: … }`"
     };

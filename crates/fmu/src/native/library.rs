@@ -25,7 +25,7 @@ pub fn find(folder: &Path, name: &str, version: Version) -> Result<PathBuf, Faul
     let mut found: Vec<String> = found.map(|entry| format!("`{}`", entry.file_name().to_string_lossy())).collect();
     found.sort();
     let found = if found.is_empty() { "none".to_owned() } else { found.join(", ") };
-    Err(Fault::Library(format!("there is none for `{platform}`; the unit has {found}")))
+    Err(Fault::Library(format!("the unit has no library for `{platform}`, but {found}")))
 }
 
 /// An error with its reason, which is the system's.

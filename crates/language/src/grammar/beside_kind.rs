@@ -11,7 +11,7 @@ pub fn within_kind(known: &[&str], entries: &[Entry]) -> Option<String> {
         (Some(kind), None) => {
             let other = entries.iter().find(|entry| entry.key != kind.key)?;
             let (kind, other) = (&kind.key, clip(&other.key));
-            Some(format!("what belongs to `{kind}` stands within it: `{{ {kind}: {{ …, {other}: … }} }}`"))
+            Some(format!("keys of `{kind}` stand within it: `{{ {kind}: {{ …, {other}: … }} }}`"))
         }
         (None, _) => {
             let mut values = entries.iter().filter_map(|entry| entry.value.scalar());

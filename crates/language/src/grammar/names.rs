@@ -332,7 +332,7 @@ pub fn allowed(name: &str, symbol: Symbol, context: Context) -> Result<Symbol, N
         (Context::Time, _) => Some("only parameters and t can stand here: this value does not follow the motion"),
         (_, Symbol::Reaction { .. }) => Some("reactions are known only when the motion is; only outputs may use them"),
         (_, Symbol::Energy(_)) => Some("only outputs may use energies"),
-        (_, Symbol::BlackBox { .. }) => Some("only outputs may use what a black box answers"),
+        (_, Symbol::BlackBox { .. }) => Some("only outputs may use answers of a black box"),
         (Context::Effect, Symbol::Sensor { measure, .. }) if measure.is_motion() => None,
         (Context::Command, Symbol::Sensor { measure, .. })
             if measure.is_motion() && measure.name() == Sensor::VALUE.name() =>
@@ -346,7 +346,7 @@ pub fn allowed(name: &str, symbol: Symbol, context: Context) -> Result<Symbol, N
             "a joint constrains positions, which no state gives: let a `servo` follow it, or the `speed` of a motor",
         ),
         (_, Symbol::Sensor { .. }) => {
-            Some("what an effect does is known only when the motion is; only outputs may use it")
+            Some("forces of an effect are known only with the motion; only outputs may use them")
         }
         (_, Symbol::RollPitchYaw { .. }) => {
             Some("these angles jump by a turn, so only outputs may use them; a joint's `angle` does not")

@@ -224,7 +224,7 @@ impl Report<'_> {
         if !well_formed {
             let message = format!("`{}` cannot be the name of {what}", clip(name));
             let help = match name.contains('{') {
-                true => "an index stands in the name of what is repeated: `repeat: { i: 1..6 }`",
+                true => "the name of a repeated entry contains the index: `repeat: { i: 1..6 }`",
                 false => "a name is made of letters, digits and `_`, a letter first",
             };
             self.error(Code::BadName, at.clone(), message, help.to_owned());
@@ -279,7 +279,7 @@ impl Report<'_> {
         match found {
             Ok(found) => Some(found),
             Err(error) => {
-                let help = error.help.clone().or_else(|| Some("it is looked for in the model's folder".to_owned()));
+                let help = error.help.clone().or_else(|| Some("paths are relative to the model's folder".to_owned()));
                 self.diagnostics.push(Diagnostic::error(error.code, node.span.clone(), error.message).help(help));
                 None
             }

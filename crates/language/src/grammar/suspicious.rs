@@ -86,7 +86,7 @@ impl<S: SymbolTable> Reader<'_, S> {
             return;
         }
         for (span, help) in std::mem::take(&mut self.lengths.large) {
-            let message = "a length above 100 m has no unit, beside others of millimetres";
+            let message = "a length above 100 m has no unit, while others are in millimetres";
             self.diagnostics.push(Diagnostic::warning(Code::LengthWithoutUnit, span, message).help(help));
         }
     }

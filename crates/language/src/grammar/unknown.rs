@@ -74,8 +74,8 @@ fn unknown_word(table: &impl SymbolTable, name: &str, shown: &str, context: Cont
     if table.body(name).is_some() {
         let help = match context {
             Context::Constant => "only parameters can stand here".to_owned(),
-            _ if table.is_spatial() => format!("say what of it: `{name}.x`, `{name}.omega.x`, …"),
-            _ => format!("say what of it: `{name}.x`, `{name}.y`, `{name}.angle`, …"),
+            _ if table.is_spatial() => format!("name one of its quantities: `{name}.x`, `{name}.omega.x`, …"),
+            _ => format!("name one of its quantities: `{name}.x`, `{name}.y`, `{name}.angle`, …"),
         };
         return NameError { message: format!("`{shown}` is a body, not a number"), part, help: Some(help) };
     }
@@ -84,7 +84,7 @@ fn unknown_word(table: &impl SymbolTable, name: &str, shown: &str, context: Cont
         return NameError { message, part, help: Some(parts) };
     }
     if table.joint(name).is_some() {
-        let help = (context == Context::Output).then(|| format!("say what of it: `{name}.force` or `{name}.torque`"));
+        let help = (context == Context::Output).then(|| format!("name one of its quantities: `{name}.force` or `{name}.torque`"));
         return NameError { message: format!("`{shown}` is a joint, not a number"), part, help };
     }
     let parameters = table.parameters().filter(|known| is_said(table, known));
@@ -129,7 +129,7 @@ fn unknown_member(table: &impl SymbolTable, name: &str, owner: &str, rest: &str,
         (None, false) if known(name) => NameError {
             message: format!("`{name}` is a node of a beam, not a number"),
             part: 0..name.len(),
-            help: Some(format!("say what of it: `{name}.x`, `{name}.y`, `{name}.angle`, …")),
+            help: Some(format!("name one of its quantities: `{name}.x`, `{name}.y`, `{name}.angle`, …")),
         },
         (None, false) if table.parts_of_beam(owner).is_some() => NameError {
             message: format!("beam `{}` has no `{}`", suggest::clip(owner), suggest::clip(rest)),
@@ -164,7 +164,7 @@ fn unknown_in_body(table: &impl SymbolTable, name: &str, owner: &str, body: usiz
     }
     if point && part.is_empty() {
         let message = format!("`{}` is a point, not a number", suggest::clip(name));
-        let help = Some(format!("say what of it: `{name}.x` or `{name}.y`"));
+        let help = Some(format!("name one of its quantities: `{name}.x` or `{name}.y`"));
         return NameError { message, part: 0..name.len(), help };
     }
     let along_z = matches!(part, "z" | "vz" | "az");

@@ -181,7 +181,7 @@ impl Diagnostics {
     pub fn found_without(&mut self, first: usize, left_out: &[String]) {
         for diagnostic in self.items[first..].iter_mut().filter(|found| found.message.starts_with("unknown ")) {
             if let Some(name) = left_out.iter().find(|name| diagnostic.message.ends_with(&format!(" `{name}`"))) {
-                diagnostic.help = Some(format!("`{name}` is left out here: leave this out too, or put `{name}` in"));
+                diagnostic.help = Some(format!("`{name}` is omitted here: omit this too, or put `{name}` in"));
             }
         }
     }

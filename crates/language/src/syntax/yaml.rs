@@ -109,14 +109,14 @@ impl Builder<'_, '_> {
                 Code::UnsupportedYaml,
                 span,
                 "anchors are not supported",
-                "name what is used several times as a parameter, and use its name",
+                "make a value that is used several times a parameter, and use its name",
             ),
             Event::Alias(_) | Event::UnresolvedAlias(_) => {
                 self.error(
                     Code::UnsupportedYaml,
                     span.clone(),
                     "aliases are not supported",
-                    "name what is used several times as a parameter, and use its name; a product is `a * b`",
+                    "make a value that is used several times a parameter, and use its name; a product is `a * b`",
                 );
                 let scalar = Scalar::plain(String::new(), None);
                 self.add(Node { span, value: Value::Scalar(scalar) });

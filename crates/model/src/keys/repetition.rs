@@ -45,7 +45,7 @@ pub(super) fn allow(root: &mut Map<String, Value>) {
             "type": "object",
             "properties": {
                 "repeat": repeat,
-                "value": { "description": "What stands there once for each.", "anyOf": [
+                "value": { "description": "Entries that are repeated for each value.", "anyOf": [
                     { "$ref": "#/$defs/Number" },
                     { "type": "array", "items": { "$ref": "#/$defs/Number" }, "minItems": 3, "maxItems": 3 },
                     { "$ref": "#/$defs/Rotation" }

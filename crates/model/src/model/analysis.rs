@@ -325,7 +325,7 @@ fn report_force(reader: &mut Reader, name: &str, at: Span) {
         Some(Symbol::Sensor { measure, .. }) if !measure.is_motion() => "a force",
         _ => return,
     };
-    let message = format!("`{}` is {what}, and kinematics knows no forces", clip(name));
+    let message = format!("`{}` is {what}, but kinematics has no forces", clip(name));
     reader.error(
         Code::WrongAnalysis,
         at,

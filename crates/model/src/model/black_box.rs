@@ -275,7 +275,7 @@ fn directory(reader: &mut Reader, node: &Node, model: &Path) -> Option<PathBuf> 
             Code::BadProgram,
             node.span.clone(),
             message,
-            "it is looked for from the model's folder".to_owned(),
+            "paths are relative to the model's folder".to_owned(),
         );
         return None;
     }

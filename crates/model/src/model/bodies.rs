@@ -158,7 +158,7 @@ fn needs_motion(reader: &mut Reader, node: &Node, prescribed: &[(Coordinate, For
     let moves = prescribed.iter().any(|(_, value)| value.names().any(|(name, _)| name == "t"));
     if !moves && matches!(&node.value, Value::Sequence(items) if items.is_empty()) {
         let help = format!(
-            "what does not move is part of the ground: give `{GROUND}` the points; what is driven has a formula of t in `held`"
+            "a body that does not move is part of the ground: give `{GROUND}` the points; a driven body has a formula of t in `held`"
         );
         reader.error(Code::BadCoordinates, node.span.clone(), "a body has at least one coordinate", help);
     }
@@ -256,7 +256,7 @@ fn prescribed(
     let Some(node) = fields.get("held") else { return nothing };
     let Some(held) = reader.fields::<keys::Held>(node, fields.key_span("held")) else { return nothing };
     let refuse = |reader: &mut Reader, name: &str| {
-        let message = format!("`{name}` is a coordinate of the body, so it is not held");
+        let message = format!("`{name}` is a coordinate of the body, so `held` must not prescribe it");
         let help = format!("leave `{name}` out of `coordinates`, or give its start in `initial`");
         reader.error(Code::BadCoordinates, held.key_span(name), message, help);
     };

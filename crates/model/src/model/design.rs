@@ -37,7 +37,7 @@ pub fn read(reader: &mut Reader, fields: &Fields, riding: &[Riding]) {
         (None, None) => return,
         (Some(_), None) => {
             let help = "e.g. `objective: { least: error }`, or `objective: margin`";
-            let message = "`design` needs an `objective`: what the free values are to achieve";
+            let message = "`design` needs an `objective` for the free values";
             reader.error(Code::BadDesign, fields.key_span("design"), message, help.to_owned());
             return;
         }

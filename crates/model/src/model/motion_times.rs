@@ -31,7 +31,7 @@ pub fn check(reader: &mut Reader, outputs: &[Entry], requirements: &[Entry]) {
             true if from > end * (1.0 + TUNING.same_time) => {
                 format!("the motion ends at {end} s, so it has no value at {from} s")
             }
-            false if from >= end => format!("the motion ends at {end} s, so nothing is left of it from {from} s on"),
+            false if from >= end => format!("the motion ends at {end} s, so it has no part from {from} s on"),
             _ => continue,
         };
         let keys: &[&str] = if is_at { &["at", "to"] } else { &["from"] };

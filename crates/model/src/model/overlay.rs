@@ -38,7 +38,7 @@ pub fn read_overlay(path: &Path) -> Result<Vec<Override>, Diagnostics> {
                 "description" => (),
                 other => {
                     let help = suggest::help(other, "keys", KEYS);
-                    let message = format!("`{}` cannot stand in what is laid over a model", clip(other));
+                    let message = format!("`{}` cannot stand in an overlay of a model", clip(other));
                     error(&mut diagnostics, entry.key_span.clone(), message, help);
                 }
             }
@@ -116,7 +116,7 @@ mod tests {
             "parameters:\n  a: 30 mm ± 0.02 mm\n  b: ± 0.1 mm\n  c: { value: 2, tolerance: 1% }\n  d: 3 mm +0.1 -0.2\n";
         assert_eq!(read(text).unwrap(), ["a=30 mm ± 0.02 mm", "b=± 0.1 mm", "c=2 ± 1%", "d=3 mm +0.1 -0.2"]);
         for (text, message) in [
-            ("bodies: {}", "`bodies` cannot stand in what is laid over a model"),
+            ("bodies: {}", "`bodies` cannot stand in an overlay of a model"),
             ("parameters: 3", "a mapping belongs here"),
             ("parameters: { a: [1, 2] }", "a parameter is no list"),
             ("parameters: { a: { cost: fixed } }", "`cost` cannot be laid over a parameter"),

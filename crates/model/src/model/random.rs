@@ -60,7 +60,7 @@ pub fn read(reader: &mut Reader, entry: &Entry, fields: &Fields) -> Option<Traje
     }
     match (fields.get("random"), fields.get("follows")) {
         (Some(_), Some(_)) => {
-            let message = "what follows another excitation has its spectrum";
+            let message = "an excitation that follows another one has its spectrum";
             reader.error(
                 Code::BadExcitation,
                 fields.key_span("random"),
@@ -76,7 +76,7 @@ pub fn read(reader: &mut Reader, entry: &Entry, fields: &Fields) -> Option<Traje
         (None, Some(node)) => follower(reader, entry, fields, node),
         (None, None) => {
             let help = "`after` goes with `follows: NAME`".to_owned();
-            reader.error(Code::BadExcitation, fields.key_span("after"), "nothing says what this comes after", help);
+            reader.error(Code::BadExcitation, fields.key_span("after"), "the excitation that it comes after is missing", help);
             None
         }
     }
@@ -128,7 +128,7 @@ fn random(reader: &mut Reader, entry: &Entry, fields: &Fields) -> Option<Traject
         Some(node) => {
             let ramp = reader.number(node, Dimension::TIME)?;
             if ramp <= 0.0 {
-                reader.error(Code::OutOfRange, node.span.clone(), format!("a begin of {ramp} s is none"), None);
+                reader.error(Code::OutOfRange, node.span.clone(), format!("a begin of {ramp} s is not positive"), None);
                 return None;
             }
             ramp

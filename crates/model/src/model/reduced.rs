@@ -88,7 +88,7 @@ pub fn read(reader: &mut Reader, entry: &Entry) {
             reader.error(
                 Code::BadReducedOutput,
                 entry.key_span.clone(),
-                "a reduced output needs to say what of the motion it is",
+                "a reduced output needs a quantity of the motion",
                 help,
             );
         }
@@ -154,7 +154,7 @@ pub(super) fn times(reader: &mut Reader, fields: &Fields) -> Option<(f64, f64)> 
     let to = fields.get("to").map_or(Some(f64::INFINITY), |node| reader.number(node, Dimension::TIME))?;
     if from < 0.0 || from >= to {
         let key = if fields.get("from").is_some() { "from" } else { "to" };
-        let message = format!("the time from {from} s to {to} s is none");
+        let message = format!("the time from {from} s to {to} s is empty");
         reader.error(
             Code::BadReducedOutput,
             fields.key_span(key),

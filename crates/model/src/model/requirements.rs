@@ -104,7 +104,7 @@ fn of_mapping(reader: &mut Reader, entry: &Entry) -> Option<Requirement> {
     if let (Some(max), Some(min)) = (bound(true), bound(false))
         && max < min
     {
-        let message = format!("nothing is between `min` and `max`: {min} is above {max}");
+        let message = format!("no value is between `min` and `max`: {min} is above {max}");
         reader.error(Code::ReversedRange, fields.key_span("max"), message, "`min` is the smaller one".to_owned());
         return None;
     }
@@ -152,7 +152,7 @@ fn timed(reader: &mut Reader, fields: &Fields, found: Requirement, (from, to): (
         reader.error(
             Code::MisplacedKey,
             fields.key_span(key),
-            format!("`{key}` has no meaning for what is one number a motion"),
+            format!("`{key}` has no meaning for one number per motion"),
             help,
         );
         return None;

@@ -40,7 +40,7 @@ pub(super) struct Numbers {
 pub(super) const REDUCED: Numbers = Numbers {
     dimension: |model, name| model.reduced.iter().find(|own| own.name == name).map(|own| own.dimension),
     refusal: "neither a reduced output nor a parameter",
-    help: "what is compared with a reduced output is one number a motion; make it a reduced output too",
+    help: "a reduced output is compared with one number per motion: make the other one a reduced output too",
 };
 
 /// Outputs, and results that an analysis adds to them.

@@ -49,7 +49,7 @@ pub(super) fn missing_sections(
     let no_time = analysis::needs_time(&reader.model) && fields.get("simulation").is_none();
     let asked = [
         (no_body, "bodies", "a model needs at least one body", "e.g. `slider: { mass: 0.45, coordinates: [x] }`"),
-        (no_output, "outputs", "a model needs at least one output", "name what is to be observed, e.g. `x: slider.x`"),
+        (no_output, "outputs", "a model needs at least one output", "name the observed quantities, e.g. `x: slider.x`"),
         (no_time, "simulation", "a model needs `simulation`", "e.g. `simulation: { duration: 2, step: 1e-3 }`"),
     ];
     // Misspelt, or not a mapping.

@@ -134,7 +134,7 @@ pub fn check_instants(reader: &mut Reader, effects: &[Entry]) {
             let message =
                 format!("`{}` changes at {:.0e} instants in {duration} s: too many", entry.key, duration / period);
             let help =
-                format!("a period of {:e} s makes 10000; what is sampled that often is continuous", duration / 1e4);
+                format!("a period of {:e} s makes 10000; make such a state continuous", duration / 1e4);
             reader.error(Code::TooLarge, entry.key_span.clone(), message, help);
         }
     }
@@ -151,7 +151,7 @@ pub fn check(reader: &mut Reader, fields: &Fields, effects: &[Entry]) {
     let sampled: Vec<&Effect> = reader.model.effects.iter().filter(|own| is_sampled(own)).collect();
     let first = effects.iter().find(|entry| sampled.iter().any(|own| own.name == entry.key));
     if let (Analysis::Modes(_), Some(entry)) = (analysis, first) {
-        let message = format!("`{}` changes at instants, and modes are of what changes all the time", clip(&entry.key));
+        let message = format!("`{}` changes at instants, but modes need continuous states", clip(&entry.key));
         let help = "write it as a state or a filter, its period as a `delay` of half of it; or leave it out here, e.g. in a scene with `without`";
         reader.error(Code::WrongAnalysis, entry.key_span.clone(), message, help.to_owned());
     }

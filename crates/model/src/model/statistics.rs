@@ -62,7 +62,7 @@ fn exposure(reader: &mut Reader, node: &Node) {
             None,
         );
     } else if time <= 0.0 {
-        reader.error(Code::OutOfRange, node.span.clone(), format!("a time of {time} s is none"), None);
+        reader.error(Code::OutOfRange, node.span.clone(), format!("a time of {time} s is not positive"), None);
     } else {
         reader.model.statistics.exposure = Some(time);
     }

@@ -40,7 +40,7 @@ pub(super) fn run(reading: Reading, scene: Option<&str>, costly: bool, host: &dy
     let chosen = reading.chosen(&names).map_err(|error| refused(&error))?;
     let Some((_, model)) = chosen.into_iter().next() else { return Err(refused(&"there is no model")) };
     if model.black_box.is_some() {
-        return Err(refused(&"the model asks another program, and there is none in a page: run it with `mbint run`"));
+        return Err(refused(&"the model asks another program, which a page cannot run: use `mbint run`"));
     }
     let stage = Mutex::new(study::COMPILING.to_owned());
     let tell = |fraction: f64| host.progress(&stage.lock().unwrap_or_else(PoisonError::into_inner), fraction);

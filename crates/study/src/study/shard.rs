@@ -38,7 +38,7 @@ fn simulate(description: &Description, options: &Options, store: &PartStore, nam
         }
         let task = store.task(name).map_err(of_store)?;
         let changed = || SimulationError::Store {
-            message: "the model is not what it was when the study was planned; plan it again".to_owned(),
+            message: "the model has changed since the study was planned; plan it again".to_owned(),
         };
         let (description, simulator) = studies.get(task.subsystem).ok_or_else(changed)?;
         if store.name(&task).map_err(of_store)? != *name {

@@ -43,7 +43,7 @@ pub(super) fn run(study: &Study) -> Result<Ran, RunError> {
     }
     ask_nominal(study)?;
     let (plan, failure) = planned(study, explicit_samples)?;
-    let failure = failure.map(|failure| Note::of(&failure, "what does not need that sample is kept"));
+    let failure = failure.map(|failure| Note::of(&failure, "results that do not need this sample are kept"));
     let results = methods(study, plan)?;
     repeat(study, results.bounded.validation.as_ref().map(|(validation, _)| validation))?;
     Ok(conclude(study, results, failure))

@@ -90,7 +90,7 @@ fn is_sound(own: &Certified) -> Result<(), String> {
     let wrong = |what: &str| Err(what.to_owned());
     let (k, equations) = (own.parameters.len(), &own.equations);
     if !equations.is_sound(k) {
-        return wrong("equations name what is not there, or are not as many as unknowns");
+        return wrong("equations have unknown names, or their number is not that of the unknowns");
     }
     if own.order > MAX_ORDER || own.order == 0 {
         return wrong("polynomials have an order that is not supported");
@@ -207,7 +207,7 @@ fn started(own: &Certified, piece: &Piece, shapes: &Shapes) -> Result<((Models, 
     let fill = |polynomials: &[Vec<f64>]| -> Result<Models, String> {
         let mut models = Models::zero(space, n, 1);
         if polynomials.len() != n || polynomials.iter().any(|own| own.len() >= space.size()) {
-            return Err("polynomials of the start are not as many as coordinates, or are too long".to_owned());
+            return Err("the number of polynomials of the start is not that of the coordinates, or they are too long".to_owned());
         }
         for (row, own) in polynomials.iter().enumerate() {
             models.at_mut(row, 0)[..own.len()].copy_from_slice(own);
@@ -250,7 +250,7 @@ fn shaped(proven: &ProvenCell, time: f64, shapes: &Shapes, motion: &Unknowns) ->
     let size = shapes.fine.cell.size();
     let is_short = |own: &Vec<f64>| own.len() < size;
     if w.len() != n || lambda.len() != m || tube.len() != 2 * n || !w.iter().chain(lambda).all(is_short) {
-        return Err("polynomials and radii are not as many as coordinates, or are too long".to_owned());
+        return Err("the number of polynomials and radii is not that of the coordinates, or they are too long".to_owned());
     }
     Ok(cell)
 }

@@ -78,7 +78,7 @@ fn who_fixes(system: &System, rows: &[Vec<(usize, f64)>], constraint: usize) -> 
         }
     }
     match joints.split_last() {
-        None => format!("nothing is left that `{}` could move", info.name),
+        None => format!("`{}` has no coordinate left to move", info.name),
         Some((last, [])) => format!("`{last}` fixes `{}` already", info.name),
         Some((last, rest)) => {
             let rest: Vec<String> = rest.iter().map(|joint| format!("`{joint}`")).collect();

@@ -31,7 +31,7 @@ pub enum ExplicitObstacle {
         steps: usize,
     },
     /// A force changes in space within a step.
-    #[error("a step from t = {time:.3} s passes over what a force does in space: samples do so at different times")]
+    #[error("a step from t = {time:.3} s passes over a change of a force in space, at different times in the samples")]
     PassesOver {
         /// s
         time: f64,

@@ -191,7 +191,7 @@ pub(super) fn warnings(summary: &Value, motion: &Value) -> Vec<String> {
         warnings.push(format!("Events are followed to {until} s: {}.", text(followed, "why")));
     }
     for (key, what) in [
-        ("redundant_constraints", "Redundant constraints, which are left out"),
+        ("redundant_constraints", "Redundant constraints (omitted)"),
         ("undetermined_outputs", "Outputs that equilibrium does not determine"),
         ("shared_start", "Coordinates that the model leaves open at the start"),
         ("not_simulated", "Not simulated, since no output depends on it"),
@@ -205,7 +205,7 @@ pub(super) fn warnings(summary: &Value, motion: &Value) -> Vec<String> {
         ("singular_at_start", "singular configurations at the start"),
         ("singular_configurations", "singular configurations on the way"),
         ("damped_mode", "a fast mode that the time steps damp"),
-        ("pieces", "parts of the parameters' box that are left out"),
+        ("pieces", "omitted parts of the parameters' box"),
     ] {
         if summary.get(key).is_some_and(|found| found.as_array().is_none_or(|list| !list.is_empty())) {
             warnings

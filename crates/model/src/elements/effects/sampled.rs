@@ -117,7 +117,7 @@ impl Element for Sampled {
     const KEYWORD: &'static str = "sampled";
     const WHAT: &'static str = "a sampled number";
     const DESCRIPTION: &'static str =
-        "A number that is computed at instants and held in between, as by a digital controller.";
+        "A number that is computed at instants and constant in between, as by a digital controller.";
     const EQUATIONS: &'static [&'static str] = &["y = input(k period) for k period ≤ t < (k + 1) period"];
     const SOURCE: &'static str = "Åström & Wittenmark, Computer-Controlled Systems, 3rd ed. (1997), ch. 2";
     const EXAMPLE: &'static str = "{ input: arm.angle - 0.1*sin(2*t), period: 20 ms }";

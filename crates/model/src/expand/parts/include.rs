@@ -72,7 +72,7 @@ fn file(writer: &mut Writer, path: PathBuf, span: &Span, included: &mut Included
     let text = match writer.report.files.read(&full, SYNTAX.file_bytes) {
         Ok(text) => text,
         Err(error) => {
-            let help = error.help.clone().or_else(|| Some("it is looked for in the model's folder".to_owned()));
+            let help = error.help.clone().or_else(|| Some("paths are relative to the model's folder".to_owned()));
             writer.report.diagnostics.push(Diagnostic::error(error.code, span.clone(), error.message).help(help));
             return;
         }

@@ -238,7 +238,7 @@ impl Writer<'_, '_> {
     /// Whether an instance or a part of one may be called so.
     pub(super) fn is_free(&mut self, entry: &Entry, is_part: bool) -> bool {
         let why = match entry.key.as_str() {
-            GROUND => "what does not move is called so",
+            GROUND => "fixed things have this name",
             AT if is_part => "numbers of the instance's place are called so: `left.at.x`",
             _ => return true,
         };

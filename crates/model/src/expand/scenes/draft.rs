@@ -131,7 +131,7 @@ impl TreeDraft {
             if sections.iter().all(|section| self.out.contains(&(*section, name.clone()))) && !sections.is_empty()
                 || robots
             {
-                report.error(Code::BadScene, span, format!("`{}` is left out already", clip(&name)), None);
+                report.error(Code::BadScene, span, format!("`{}` is omitted already", clip(&name)), None);
             } else if sections.is_empty() && self.has_robot() {
                 // Perhaps one of the robot's, which are known when its file is read.
                 self.robot.kept.retain(|(kept, _)| *kept != name);
@@ -159,8 +159,8 @@ impl TreeDraft {
             } else if sections.is_empty() && !self.has_robot() {
                 self.unknown(report, &name, span);
             } else {
-                let help = "`with` puts in what the model, a scene that is extended or this one's `without` leaves out";
-                report.error(Code::BadScene, span, format!("`{}` is not left out", clip(&name)), help.to_owned());
+                let help = "`with` puts in entries that the model, an extended scene or this scene's `without` omits";
+                report.error(Code::BadScene, span, format!("`{}` is not omitted", clip(&name)), help.to_owned());
             }
         }
     }

@@ -141,7 +141,7 @@ fn refuse_time(reader: &mut Reader, node: &Node, formulas: [&Formula; 2], key: &
         Code::BadExcitation,
         node.span.clone(),
         message,
-        "add what changes to the formulas that use it".to_owned(),
+        "add the change to the formulas that use it".to_owned(),
     );
     None
 }

@@ -78,7 +78,7 @@ fn tolerance(
         reader.error(
             Code::BadCost,
             entry.key_span.clone(),
-            "ISO 286 is about lengths, but the parameter is none",
+            "ISO 286 is about lengths, but the parameter is no length",
             None,
         );
         return None;

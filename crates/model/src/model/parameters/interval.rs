@@ -73,7 +73,7 @@ fn by_class(reader: &mut Reader, node: &Node, size: Option<f64>, kind: &KnownDim
         reader.error(
             Code::BadClass,
             node.span.clone(),
-            "a tolerance class is of a length, and this value is none",
+            "a tolerance class belongs to a length, but this value is no length",
             help,
         );
         return None;

@@ -89,7 +89,7 @@ fn left_out(reader: &mut Reader, source: &ParsedUrdf, groups: &[Group], of_link:
         left_out[group] = true;
         let link = &robot.links[joint.child];
         let message =
-            format!("link `{}` moves, but has no mass: it is left out, with its joint `{}`", link.name, joint.name);
+            format!("link `{}` moves, but has no mass: it is omitted, with its joint `{}`", link.name, joint.name);
         reader.diagnostics.push(Diagnostic::warning(Code::MasslessLink, link.span.clone(), message));
     }
     left_out

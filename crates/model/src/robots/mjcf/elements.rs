@@ -9,7 +9,7 @@ const LOOKS: &str = "it is appearance";
 const CONTACT: &str = "contacts of geoms are ignored: an effect `contact` says which surfaces touch";
 const SOLVER: &str = "mbint has its own integration, as `simulation` says";
 const NO_FLUID: &str = "there is no fluid: the effect `drag` resists";
-const NO_PLUGIN: &str = "what a plugin does is not in the file";
+const NO_PLUGIN: &str = "the file does not contain the plugin's code";
 const FIT: &str = "shapes are not fitted to meshes";
 const DELAY: &str = "controls act at once";
 const DYNAMICS: &str = "the actuator has a state of its own: `states` and an effect say it";
@@ -100,7 +100,7 @@ pub const SECTIONS: &[Rule] = &[
     Rule { supported: "name file", ignored: &[("content_type", "it is of the file's name")], ..rule("model", "asset") },
     refused("deformable", "mujoco", "bodies are rigid"),
     ignored("contact", "mujoco", CONTACT),
-    ignored("sensor", "mujoco", "`outputs` say what is observed"),
+    ignored("sensor", "mujoco", "`outputs` name the observed quantities"),
     ignored("keyframe", "mujoco", "`initial` says where the motion begins"),
 ];
 
@@ -177,7 +177,7 @@ pub const COUPLINGS: &[Rule] = &[
             ("group rgba width material user", LOOKS),
             (
                 "solreflimit solimplimit solreffriction solimpfriction margin limited range",
-                "limits of tendons are not held",
+                "limits of tendons have no effect",
             ),
         ],
         supported: "stiffness damping springlength frictionloss",
@@ -220,7 +220,7 @@ pub const COUPLINGS: &[Rule] = &[
             ("group user", LOOKS),
             (
                 "solreflimit solimplimit solreffriction solimpfriction margin limited range",
-                "limits of tendons are not held",
+                "limits of tendons have no effect",
             ),
         ],
         refused: &[

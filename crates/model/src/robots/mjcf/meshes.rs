@@ -198,7 +198,7 @@ pub fn warn(values: &mut Values) {
     let of_open = "this mesh is no closed surface: its inertia is that of tetrahedra to its middle, as MuJoCo has it";
     let of_folded = "tetrahedra to the middle of this mesh, which MuJoCo takes, are more than it encloses";
     let help_open = "mend the mesh, or give the body an `<inertial>`";
-    let help_folded = "with `inertia=\"exact\"` its inertia is that of what it encloses";
+    let help_folded = "with `inertia=\"exact\"` its inertia is that of the enclosed volume";
     let open = std::mem::take(&mut values.meshes.open);
     let folded = std::mem::take(&mut values.meshes.folded);
     for (found, message, help) in [(open, of_open, help_open), (folded, of_folded, help_folded)] {

@@ -28,7 +28,7 @@ use crate::syntax::{Code, Coded};
 
 /// Said of results that the user did not wait for.
 const INTERRUPTED: &str =
-    "interrupted: methods that were done are kept, of the one that was not what it had found of every sample";
+    "interrupted: results of finished methods are kept, and of the unfinished one those known for every sample";
 
 /// Why a run ended early, or which of its results are omitted, for people.
 pub struct Note {

@@ -122,7 +122,7 @@ pub fn cost(model: &Description, options: &CostOptions) -> Result<CostStudy, Cos
     let within = CostOptions { interrupted: &over, ..*options };
     let mut trajectories = integrators::trajectories(model, &system, &reference.known, &progress, &within)?;
     if (options.interrupted)() {
-        left_out.push("what was not done when the study was interrupted".to_owned());
+        left_out.push("settings that were not run when the study was interrupted".to_owned());
     } else if over() {
         left_out.push(format!("schemes that the budget of {} s does not allow", options.budget));
     }

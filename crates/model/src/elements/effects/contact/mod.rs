@@ -329,7 +329,7 @@ impl Checked for Contact {
         match given.collect::<Vec<_>>().as_slice() {
             [] if !fields.lacks_all(&SURFACES) => {}
             [] => {
-                let help = "say what the first body's surface is, e.g. `plane: y`".to_owned();
+                let help = "give the first body's surface, e.g. `plane: y`".to_owned();
                 let message = "a contact needs `plane`, `circle`, `hollow`, `path`, `polygon`, `height`, `capsule`, `block` or `hull`";
                 reader.error(Code::IncompleteElement, fields.at.clone(), message, help);
             }
@@ -341,7 +341,7 @@ impl Checked for Contact {
             }
             [edges @ ("path" | "polygon" | "block" | "hull")] => {
                 if fields.lacks_all(&["rounding", "radius"]) {
-                    let message = format!("a `{edges}` needs `rounding`, or a `radius` of what touches it");
+                    let message = format!("a `{edges}` needs `rounding`, or the other surface a `radius`");
                     let help = "surfaces are told apart to that depth".to_owned();
                     reader.error(Code::IncompleteElement, fields.key_span(edges), message, help);
                 }

@@ -57,7 +57,7 @@ pub struct Impact {
     )]
     pub stiffness: Formula,
     /// χ, the loss coefficient.
-    #[quantity(unit = "s/m or s/rad", constant, nonnegative, otherwise = "0: nothing is lost")]
+    #[quantity(unit = "s/m or s/rad", constant, nonnegative, otherwise = "0: no energy is lost")]
     pub dissipation: Option<Formula>,
     /// Instead of `dissipation`: speed after over speed before, above 0 and at most 1.
     #[quantity(unit = "1", constant, requires = RESTITUTION)]
