@@ -1,8 +1,8 @@
 //! The bounds of every file of `models/`, as they were last reviewed: `snapshots/`. They are the records of
 //! `mbint snapshot`; insta is the reviewer.
 //!
-//! `cargo insta review` (or `INSTA_UPDATE=always cargo test --test models snapshots -- --include-ignored`) takes changes
-//! over. In CI a model without a snapshot fails.
+//! `cargo insta review` (or `INSTA_UPDATE=always cargo test --test models snapshots -- --include-ignored`) takes
+//! changes over. In CI a model without a snapshot fails.
 
 use crate::common::{load_all, model_files};
 use crate::run_all::assert_complete;

@@ -84,7 +84,8 @@ fn unknown_word(table: &impl SymbolTable, name: &str, shown: &str, context: Cont
         return NameError { message, part, help: Some(parts) };
     }
     if table.joint(name).is_some() {
-        let help = (context == Context::Output).then(|| format!("name one of its quantities: `{name}.force` or `{name}.torque`"));
+        let help = (context == Context::Output)
+            .then(|| format!("name one of its quantities: `{name}.force` or `{name}.torque`"));
         return NameError { message: format!("`{shown}` is a joint, not a number"), part, help };
     }
     let parameters = table.parameters().filter(|known| is_said(table, known));

@@ -76,7 +76,12 @@ pub fn read(reader: &mut Reader, entry: &Entry, fields: &Fields) -> Option<Traje
         (None, Some(node)) => follower(reader, entry, fields, node),
         (None, None) => {
             let help = "`after` goes with `follows: NAME`".to_owned();
-            reader.error(Code::BadExcitation, fields.key_span("after"), "the excitation that it comes after is missing", help);
+            reader.error(
+                Code::BadExcitation,
+                fields.key_span("after"),
+                "the excitation that it comes after is missing",
+                help,
+            );
             None
         }
     }

@@ -133,8 +133,7 @@ pub fn check_instants(reader: &mut Reader, effects: &[Entry]) {
         if let Some(&(_, period)) = too_short.iter().find(|(name, _)| *name == entry.key) {
             let message =
                 format!("`{}` changes at {:.0e} instants in {duration} s: too many", entry.key, duration / period);
-            let help =
-                format!("a period of {:e} s makes 10000; make such a state continuous", duration / 1e4);
+            let help = format!("a period of {:e} s makes 10000; make such a state continuous", duration / 1e4);
             reader.error(Code::TooLarge, entry.key_span.clone(), message, help);
         }
     }

@@ -207,7 +207,8 @@ fn started(own: &Certified, piece: &Piece, shapes: &Shapes) -> Result<((Models, 
     let fill = |polynomials: &[Vec<f64>]| -> Result<Models, String> {
         let mut models = Models::zero(space, n, 1);
         if polynomials.len() != n || polynomials.iter().any(|own| own.len() >= space.size()) {
-            return Err("the number of polynomials of the start is not that of the coordinates, or they are too long".to_owned());
+            return Err("the number of polynomials of the start is not that of the coordinates, or they are too long"
+                .to_owned());
         }
         for (row, own) in polynomials.iter().enumerate() {
             models.at_mut(row, 0)[..own.len()].copy_from_slice(own);
@@ -250,7 +251,9 @@ fn shaped(proven: &ProvenCell, time: f64, shapes: &Shapes, motion: &Unknowns) ->
     let size = shapes.fine.cell.size();
     let is_short = |own: &Vec<f64>| own.len() < size;
     if w.len() != n || lambda.len() != m || tube.len() != 2 * n || !w.iter().chain(lambda).all(is_short) {
-        return Err("the number of polynomials and radii is not that of the coordinates, or they are too long".to_owned());
+        return Err(
+            "the number of polynomials and radii is not that of the coordinates, or they are too long".to_owned()
+        );
     }
     Ok(cell)
 }

@@ -229,8 +229,7 @@ fn unasked(prepared: &[Prepared]) -> Option<Decision> {
         own += one.simulator.program.observe().len();
     }
     Some(Decision {
-        what: "reactions, energies and sensors of effects that no output uses are not computed"
-            .to_owned(),
+        what: "reactions, energies and sensors of effects that no output uses are not computed".to_owned(),
         why: "nothing else needs them".to_owned(),
         saves: Some(saving(other, own, Each::Row)),
     })

@@ -85,6 +85,8 @@ impl Branch {
         let surrogate = &piece.surrogate;
         let direct = piece.motions.held_out.at(segment, time, TUNING.beyond_longest)?;
         let mut doubts = direct.doubts;
+        // Without held-out samples their motions have no lines.
+        doubts.resize(surrogate.lines(), 0.0);
         let mut of_samples = || {
             let motion = piece.motions.fitted.at(segment, time, TUNING.beyond_longest)?;
             doubts.iter_mut().zip(motion.doubts).for_each(|(own, other)| *own = own.max(other));
@@ -103,6 +105,10 @@ impl Branch {
             (None, PolynomialSource::Grid(grid)) => grid.coefficients(&of_samples()?, &mut SurrogateWork::default()),
             (None, PolynomialSource::Jets(space)) => jet_at(space, &piece.motions.fitted, segment, time)?,
         };
+        // Nothing then shows how far the polynomials are off.
+        if left_out.is_empty() && held_out.is_empty() {
+            return None;
+        }
         let of_line = |(line, own): (usize, &[f64])| {
             let least = doubts[line].max(surrogate.truncation(own));
             let values = &direct.values[line * held_out.len()..];
