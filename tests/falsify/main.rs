@@ -28,6 +28,7 @@ mod known;
 mod questions;
 mod random;
 mod record;
+mod ridge;
 mod rows;
 mod runge_kutta;
 mod search;
