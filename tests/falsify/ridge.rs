@@ -34,14 +34,15 @@ pub fn along_ridge(start: &[f64], axis: usize, points: usize, f: &dyn Fn(&[f64])
 fn by_golden_section(mut lower: f64, mut upper: f64, f: &dyn Fn(f64) -> f64) -> (f64, f64) {
     let share = 0.5 * (5_f64.sqrt() - 1.0);
     let inner = |lower: f64, upper: f64| [upper - share * (upper - lower), lower + share * (upper - lower)];
-    let [mut low, mut high] = inner(lower, upper).map(|place| (f(place), place));
+    let at = |place: f64| (f(place), place);
+    let [mut low, mut high] = inner(lower, upper).map(at);
     while upper - lower > FINEST_ACROSS {
         if low.0 > high.0 {
             (upper, high) = (high.1, low);
-            low = (f(inner(lower, upper)[0]), inner(lower, upper)[0]);
+            low = at(inner(lower, upper)[0]);
         } else {
             (lower, low) = (low.1, high);
-            high = (f(inner(lower, upper)[1]), inner(lower, upper)[1]);
+            high = at(inner(lower, upper)[1]);
         }
     }
     if low.0 > high.0 { low } else { high }

@@ -117,13 +117,4 @@ impl Spelled {
             }
         }
     }
-
-    /// Times at which its segments end, s.
-    pub fn ends(&self) -> Vec<f64> {
-        let sum = |end: &mut f64, length: &f64| {
-            *end += length;
-            Some(*end)
-        };
-        self.lengths.iter().scan(0.0, sum).collect()
-    }
 }

@@ -27,8 +27,6 @@ pub struct SegmentRun<'s> {
     samples: Vec<Sample>,
     /// Indices of words, by sample.
     words: Vec<Option<usize>>,
-    /// By sample, s.
-    event_times: Vec<Vec<f64>>,
     duration: f64,
 }
 
@@ -43,15 +41,8 @@ impl<'s> SegmentRun<'s> {
         segments: &'s Segments,
         duration: f64,
     ) -> Result<Self, SimulationError> {
-        let mut run = Self {
-            simulator,
-            segments,
-            tiles: Vec::new(),
-            samples: samples.to_vec(),
-            words: Vec::new(),
-            event_times: Vec::new(),
-            duration,
-        };
+        let mut run =
+            Self { simulator, segments, tiles: Vec::new(), samples: samples.to_vec(), words: Vec::new(), duration };
         let Some(program) = simulator.switches() else { return Ok(run) };
         let spell = |sample: &Sample| Ok(Spelled::by(run.path(program, sample)?, segments));
         let spelled: Vec<Spelled> = samples.par_iter().map(spell).collect::<Result<_, SimulationError>>()?;
@@ -75,7 +66,6 @@ impl<'s> SegmentRun<'s> {
         };
         run.tiles = lanes.into_par_iter().map(of_lanes).collect::<Result<_, SimulationError>>()?;
         run.words = spelled.iter().map(|spelled| spelled.word).collect();
-        run.event_times = spelled.iter().map(Spelled::ends).collect();
         Ok(run)
     }
 
@@ -89,7 +79,13 @@ impl<'s> SegmentRun<'s> {
             words.iter().map(with).min()
         };
         let count = words.and_then(common).unwrap_or(0);
-        self.event_times.iter().map(|times| times[..count.min(times.len())].to_vec()).collect()
+        let mut times = vec![Vec::new(); self.samples.len()];
+        for SegmentRows { tile, .. } in &self.tiles {
+            for (&sample, lengths) in tile.samples.iter().zip(&tile.guesses) {
+                times[sample] = ends(&lengths[..count]);
+            }
+        }
+        times
     }
 
     /// The same, row by row.
@@ -149,6 +145,15 @@ impl<'s> SegmentRun<'s> {
         all.iter().zip(found).for_each(|((sample, _), margin)| values[*sample] = margin);
         BoundaryMargins { met: boundary.met.clone(), missed: boundary.missed.clone(), values }
     }
+}
+
+/// Ends of segments that follow each other, given their lengths.
+fn ends(lengths: &[f64]) -> Vec<f64> {
+    let sum = |end: &mut f64, length: &f64| {
+        *end += length;
+        Some(*end)
+    };
+    lengths.iter().scan(0.0, sum).collect()
 }
 
 /// Motions of all samples of a word.

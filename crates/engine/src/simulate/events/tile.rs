@@ -59,7 +59,7 @@ pub(super) struct SegmentTile<'s> {
     state: Vec<f64>,
     next: usize,
     /// Lengths of all segments of each lane as the lane alone finds them, s.
-    guesses: Vec<Vec<f64>>,
+    pub guesses: Vec<Vec<f64>>,
     /// Segments that rows may lie in.
     pub recorded: VecDeque<Recorded>,
     /// Motions of lanes alone, where they are needed.

@@ -47,18 +47,19 @@ impl Recordings<'_> {
             let values: Vec<f64> = (0..nominal.len()).flat_map(of_number).collect();
             surrogate.coefficients(&values, &mut SurrogateWork::default())
         };
+        let events = self.nominal.events[..count].to_vec();
+        let of_events = self.nodes.iter().map(|node| &node.events[..count]).collect();
+        let of_points = self.nodes.iter().map(|node| node.points.as_slice()).collect();
         let basis = surrogate.basis();
-        let bodies = fit(&nominal, nodes.iter().map(Vec::as_slice).collect());
-        let event_deviations =
-            fit(&self.nominal.events[..count], self.nodes.iter().map(|node| &node.events[..count]).collect());
-        MotionPolynomials {
+        let found = MotionPolynomials {
             degrees: (0..basis.len()).flat_map(|term| basis.degrees(term)).copied().collect(),
-            events: self.nominal.events[..count].to_vec(),
-            error: self.error(surrogate, &nominal, &bodies, &event_deviations),
-            points: fit(&self.nominal.points, self.nodes.iter().map(|node| node.points.as_slice()).collect()),
-            event_deviations,
-            bodies,
-        }
+            event_deviations: fit(&events, of_events),
+            events,
+            bodies: fit(&nominal, nodes.iter().map(Vec::as_slice).collect()),
+            points: fit(&self.nominal.points, of_points),
+            error: f64::NAN,
+        };
+        MotionPolynomials { error: self.error(surrogate, &nominal, &found), ..found }
     }
 
     /// The end of the motion, s.
@@ -84,7 +85,7 @@ impl Recordings<'_> {
     }
 
     /// How far points of bodies are from where other samples have them in the shown rows, at most, m.
-    fn error(&self, surrogate: &Surrogate, nominal: &[f64], bodies: &[f64], event_deviations: &[f64]) -> f64 {
+    fn error(&self, surrogate: &Surrogate, nominal: &[f64], found: &MotionPolynomials) -> f64 {
         let points: Vec<Vec<f64>> = self.others.iter().map(|(xi, _)| xi.clone()).collect();
         let count = points.len();
         // Deviations: (number, sample)
@@ -93,8 +94,9 @@ impl Recordings<'_> {
             surrogate.basis().values(&points, coefficients, &mut found, &mut SparseWork::default());
             found
         };
-        let events = &self.nominal.events[..event_deviations.len() / surrogate.basis().len().max(1)];
-        let (of_bodies, of_events) = (deviations(bodies, nominal.len()), deviations(event_deviations, events.len()));
+        let events = &found.events;
+        let of_bodies = deviations(&found.bodies, nominal.len());
+        let of_events = deviations(&found.event_deviations, events.len());
         let times: Vec<f64> = self.shown_rows.iter().map(|&row| self.times[row]).collect();
         let of_sample = |sample: usize| -> f64 {
             let with = |base: &[f64], deviations: &[f64]| -> Vec<f64> {

@@ -83,6 +83,10 @@ impl Branch {
     /// `held_out` are the points of the piece's samples that are held out.
     fn new(piece: &Piece, held_out: &[Point], segment: usize, time: f64, source: PolynomialSource) -> Option<Self> {
         let surrogate = &piece.surrogate;
+        // Only a fit knows its error without samples that are held out.
+        if held_out.is_empty() && surrogate.squares().is_none() {
+            return None;
+        }
         let direct = piece.motions.held_out.at(segment, time, TUNING.beyond_longest)?;
         let mut doubts = direct.doubts;
         // Without held-out samples their motions have no lines.
@@ -105,10 +109,6 @@ impl Branch {
             (None, PolynomialSource::Grid(grid)) => grid.coefficients(&of_samples()?, &mut SurrogateWork::default()),
             (None, PolynomialSource::Jets(space)) => jet_at(space, &piece.motions.fitted, segment, time)?,
         };
-        // Nothing then shows how far the polynomials are off.
-        if left_out.is_empty() && held_out.is_empty() {
-            return None;
-        }
         let of_line = |(line, own): (usize, &[f64])| {
             let least = doubts[line].max(surrogate.truncation(own));
             let values = &direct.values[line * held_out.len()..];
