@@ -64,6 +64,7 @@ pub mod statistics;
 mod surrogate;
 mod taylor;
 mod tensor;
+mod thinning;
 mod time_shift;
 pub(crate) mod tuning;
 
@@ -109,5 +110,6 @@ pub use sparse_grid::{SparseGrid, expected};
 pub use spectrum::{Bin, Spectrum};
 pub use surrogate::{Surrogate, SurrogateWork};
 pub use taylor::TaylorRange;
+pub use thinning::Thinning;
 pub use time_shift::{TimeShift, Turning};
 pub use tuning::tuning;

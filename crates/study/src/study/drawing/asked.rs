@@ -138,10 +138,19 @@ impl DrawingValues {
         }
     }
 
+    /// Origin of a body's frame in the ground's, m.
+    pub fn position(&self, body: &AskedBody) -> Vector3<f64> {
+        body.position.map_or_else(Vector3::zeros, |position| self.vector(position))
+    }
+
+    /// Orientation of a body's frame in the ground's.
+    pub fn orientation(&self, body: &AskedBody) -> UnitQuaternion<f64> {
+        self.rotation(body.rotation)
+    }
+
     /// A body's frame in the ground's.
     pub fn frame(&self, body: &AskedBody) -> RelativeFrame {
-        let position = body.position.map_or_else(Vector3::zeros, |position| self.vector(position));
-        RelativeFrame { position, rotation: self.rotation(body.rotation) }
+        RelativeFrame { position: self.position(body), rotation: self.orientation(body) }
     }
 }
 

@@ -10,7 +10,6 @@ mod polynomials;
 mod reach;
 mod rows;
 mod samples;
-mod thinning;
 pub(crate) mod tuning;
 mod worst;
 
@@ -19,7 +18,7 @@ use super::drawing::{drawn, extent, has_ground};
 use super::{RunError, caught, pool};
 use crate::assemble::FormulationInfo;
 use crate::model::Description;
-use crate::numerics::Sample;
+use crate::numerics::{Sample, Thinning};
 use crate::results::{Drawing, FunctionWitness, Motion, MovingSample, ParameterSummary, Poses, Summary};
 use crate::simulate::{Integration, Interruption};
 pub use by_hand::{Grip, Hand, Held};
@@ -28,7 +27,6 @@ pub use movable::Movable;
 use polynomials::Recordings;
 use rows::MotionRows;
 use samples::Samples;
-use thinning::Thinning;
 use tuning::TUNING;
 use worst::add_worst_motions;
 
@@ -267,12 +265,11 @@ impl<'a> Posed<'a> {
 
     fn pose(&self, values: &DrawingValues, into: &mut Vec<f64>) {
         for body in &self.bodies[1..] {
-            let frame = values.frame(body);
-            let [x, y, z] = frame.position.into();
+            let [x, y, z] = values.position(body).into();
             match values.angle(body).filter(|_| !self.spatial) {
                 Some(angle) => into.extend([x, y, angle]),
                 None => {
-                    let turned = frame.rotation.quaternion();
+                    let turned = values.orientation(body).into_inner();
                     into.extend([x, y, z, turned.w, turned.i, turned.j, turned.k]);
                 }
             }

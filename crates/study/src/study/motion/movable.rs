@@ -1,11 +1,10 @@
 //! A mechanism that is moved: by a simulation of one sample, or by hand.
 
 use super::by_hand::Hand;
-use super::thinning::Thinning;
 use super::tuning::TUNING;
 use super::{Posed, Recorded};
 use crate::model::Description;
-use crate::numerics::Sample;
+use crate::numerics::{Sample, Thinning};
 use crate::results::{Drawing, Motion, Poses};
 use crate::simulate::Interruption;
 use crate::study::RunError;

@@ -1,9 +1,9 @@
-//! Choice of the rows of a simulation at which a motion is shown: those between which straight lines are best.
+//! Choice of rows of tables between which straight lines are best, as when a motion is shown.
 
 use std::collections::BinaryHeap;
 
 /// Rows × lines of one or more samples, by which rows are chosen.
-pub(super) struct Thinning<'v> {
+pub struct Thinning<'v> {
     /// (row, line) of each sample.
     pub samples: Vec<&'v [f64]>,
     /// Weight of a line's deviation.
@@ -87,7 +87,7 @@ mod tests {
     }
 
     #[test]
-    fn no_more_rows_are_kept_than_allowed_and_the_error_is_told() {
+    fn the_number_of_rows_is_limited_and_the_error_returned() {
         let times: Vec<f64> = (0..=100).map(f64::from).collect();
         let parabola: Vec<f64> = times.iter().map(|time| time * time).collect();
         let thinning = Thinning { samples: vec![&parabola], weights: &[2.0] };
