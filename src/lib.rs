@@ -26,7 +26,8 @@ pub use results::{
 pub use syntax::Diagnostics;
 
 // Rooms of the crates below are reachable under their names here.
-use mbint_engine::{assemble, c_code, compile, reduce, simulate};
+use mbint_engine::{c_code, simulate};
+use mbint_equations::{assemble, compile, reduce};
 use mbint_export::{export, overview};
 use mbint_language::{grammar, syntax};
 use mbint_methods::methods;

@@ -1,7 +1,7 @@
 //! The same scheme in a plain implementation: one sample, residual and Newton matrix by hand, full Newton with
 //! nalgebra's LU.
 //!
-//! M w₊ + Φ_qᵀ λ₊ − Q = 0,  Φ / (βh²(1+α)) = 0,  as in `crates/engine/src/compile/newton_matrix.rs`.
+//! M w₊ + Φ_qᵀ λ₊ − Q = 0,  Φ / (βh²(1+α)) = 0,  as in `crates/equations/src/compile/newton_matrix.rs`.
 
 use nalgebra::{DMatrix, DVector, Dyn, OMatrix, SMatrix};
 

@@ -6,7 +6,8 @@
 
 // Rooms of the crates below are reachable under their names here.
 use mbint_certificate::certificate;
-use mbint_engine::{compile, simulate};
+use mbint_engine::simulate;
+use mbint_equations::compile;
 use mbint_language::{grammar, syntax};
 use mbint_methods::methods;
 use mbint_model::{elements, model};

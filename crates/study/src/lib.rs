@@ -6,7 +6,8 @@
 
 // Rooms of the crates below keep their names here.
 use mbint_certificate::certificate;
-use mbint_engine::{assemble, c_code, compile, reduce, simulate};
+use mbint_engine::{c_code, simulate};
+use mbint_equations::{assemble, compile, reduce};
 use mbint_language::{grammar, syntax};
 use mbint_methods::methods;
 use mbint_model::{elements, model};
