@@ -114,7 +114,7 @@ impl Case {
 macro_rules! compared_with_adams {
     ($case:expr) => {
         #[test]
-        fn after_a_second_it_is_where_adams_has_it() {
+        fn motion_after_one_second_matches_adams() {
             $case.at_one_second();
         }
 

@@ -20,7 +20,7 @@ fn close(found: f64, wanted: f64, tolerance: f64, case: &str) {
 
 /// A scissor lift on a rod from the ground to its left arm: by virtual work the rod carries −V'(θ)/ℓ'(θ).
 #[test]
-fn a_rod_lifts_scissors_by_pushing_from_below_and_by_pulling_from_above() {
+fn rod_lifts_scissors_by_pressure_or_tension() {
     let (arm, beyond, angle, load, mass) = (1.6_f64, 0.3, 20_f64.to_radians(), 500.0, 30.0);
     let reach = 0.5 * arm + beyond;
     for anchor in [[0.35, 0.0], [1.4, 2.5]] {
@@ -62,7 +62,7 @@ simulation: {{ duration: 1, formulation: {formulation} }}
 
 /// A boom that turns about y, in space, and whatever holds it: m g c cos θ + T ℓ'(θ) = 0.
 #[test]
-fn what_holds_a_boom_in_space_says_with_which_sign() {
+fn axial_force_of_a_boom_in_space_has_the_right_sign() {
     let (mass, center, reach, aside) = (40.0, 0.5, 1.2, 0.2);
     let above = [0.1, -0.3, 1.5];
     let below = [0.3, 0.5, -0.8];

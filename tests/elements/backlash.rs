@@ -27,7 +27,7 @@ simulation: { duration: 0.1, step: 2e-5, output_step: 1e-3 }
 }
 
 #[test]
-fn teeth_store_what_they_take() {
+fn stored_energy_equals_work_done() {
     assert_balance(
         &pair(
             "",

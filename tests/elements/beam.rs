@@ -40,7 +40,7 @@ fn last(bounds: &Bounds, name: &str) -> f64 {
 
 /// y = P L³/3 EI and slope P L²/2 EI for a small load, of one element already.
 #[test]
-fn a_cantilever_bends_by_the_textbook() {
+fn deflection_of_a_cantilever_matches_the_textbook() {
     for elements in [1, 3] {
         let load = format!("{{ force: {{ on: n{elements}, value: [0, -1e-3] }} }}");
         let description = cantilever(elements, 0.01, 1.0, 0.5, &load, "duration: 20, step: 0.01, output_step: 1");
@@ -100,7 +100,7 @@ fn a_cantilever_has_its_natural_frequency() {
 
 /// Bent from the start on, its axis askew.
 #[test]
-fn it_stores_what_it_takes() {
+fn stored_energy_equals_work_done() {
     assert_balance(
         &pair(
             "",

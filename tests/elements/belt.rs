@@ -63,7 +63,7 @@ simulation: { duration: 2, step: 1e-3, output_step: 0.1 }
 
 /// Centres that part stretch both strands by L(d) − L(distance), and these pull them together by 2 T d/L.
 #[test]
-fn centres_that_part_tighten_the_belt() {
+fn growing_centre_distance_tightens_the_belt() {
     let description = read(
         "
 bodies:
@@ -92,7 +92,7 @@ simulation: { duration: 0.1, step: 1e-3 }
 
 /// Damping takes c (ẋ₁² + ẋ₂²) from the energy of pulleys and strands, of which both stay taut.
 #[test]
-fn damping_is_all_that_takes_energy() {
+fn only_damping_dissipates_energy() {
     let rates = |run: &str, [first, second]: [f64; 2], parting: &str| {
         let sign = if run == "open" { -1.0 } else { 1.0 };
         let shift = format!("({first}*a.angular_velocity + {}*b.angular_velocity)", sign * second);

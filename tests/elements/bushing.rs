@@ -3,7 +3,7 @@
 use crate::common::power::{APART, APART_IN_SPACE, assert_balance, pair, spatial_pair};
 
 #[test]
-fn springs_store_what_they_take() {
+fn stored_energy_of_springs_equals_work_done() {
     assert_balance(
         &pair(
             "",
@@ -24,7 +24,7 @@ fn springs_store_what_they_take() {
 
 /// Seen from the first body.
 #[test]
-fn dampers_take_relative_motion_only() {
+fn dampers_resist_only_relative_motion() {
     assert_balance(
         &pair("", "  e: { bushing: { between: [a.P, b.P], damping: 3, torsional_damping: 2 } }", APART),
         "-3*((b.P.vx - a.P.vx + a.angular_velocity*(b.P.y - a.P.y))^2 + (b.P.vy - a.P.vy - a.angular_velocity*(b.P.x - a.P.x))^2) - 2*(b.angular_velocity - a.angular_velocity)^2",

@@ -35,7 +35,7 @@ simulation: { duration: 9, step: 1e-3, output_step: 1e-3 }
 
 /// Taut from the start on.
 #[test]
-fn it_stores_what_it_takes() {
+fn stored_energy_equals_work_done() {
     assert_balance(&pair("", "  e: { cable: { between: [a.P, b.P], free_length: 0.05, stiffness: 50 } }", APART), "0");
     assert_balance(
         &spatial_pair("", "  e: { cable: { between: [a.P, b.P], free_length: 0.05, stiffness: 50 } }", APART_IN_SPACE),

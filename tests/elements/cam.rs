@@ -103,7 +103,7 @@ fn a_polynomial_lift_has_its_closed_form() {
 
 /// A table of the harmonic lift, over a little more than a turn so that its ends do not matter.
 #[test]
-fn a_table_is_a_lift() {
+fn lift_may_be_a_table() {
     let points = (-4..=76).map(|index| {
         let angle = std::f64::consts::TAU * f64::from(index) / 72.0;
         format!("[{angle}, {}]", harmonic(angle)[0])

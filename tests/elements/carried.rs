@@ -131,6 +131,6 @@ pub fn table() -> String {
 }
 
 #[test]
-fn what_is_carried_along_steadily_feels_nothing_of_it() {
+fn steady_motion_leaves_inner_forces_unchanged() {
     println!("{}", table());
 }

@@ -64,7 +64,7 @@ fn loose(friction: &str) -> Subject {
 const SETTLED: f64 = 0.1;
 
 #[test]
-fn a_loose_pin_stays_in_its_bearing_and_the_slider_near_its_place() {
+fn loose_pin_stays_within_its_clearance() {
     let tight = nominal(&ideal());
     for friction in ["", "      friction: { coefficient: 0.1 }\n"] {
         let description = loose(friction);
@@ -113,7 +113,7 @@ fn the_clearance_may_be_uncertain() {
 }
 
 #[test]
-fn an_elastic_bearing_stores_what_it_takes() {
+fn stored_energy_of_an_elastic_bearing_equals_work_done() {
     assert_balance(
         &pair(
             "",

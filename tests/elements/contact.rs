@@ -55,7 +55,7 @@ fn an_elastic_ball_keeps_its_energy() {
 /// An impact without weight, at 2 m/s: the restitution depends on d = χ v alone, and the speed after the impact
 /// converges to it.
 #[test]
-fn an_impact_leaves_what_its_dissipation_says() {
+fn restitution_follows_from_the_dissipation() {
     for (impact, d) in [
         ("{ stiffness: 1e6 }", 1e-9),
         ("{ stiffness: 1e6, dissipation: 0.5 }", 1.0),
@@ -86,7 +86,7 @@ simulation: {{ duration: 0.2, step: 1e-4, output_step: 0.01 }}
 
 /// If no law of the literature is named, an impact at that speed has the given restitution, whatever the exponent.
 #[test]
-fn an_impact_leaves_its_restitution() {
+fn impact_has_the_given_restitution() {
     for (restitution, keys) in [(1.0, ""), (0.9, ""), (0.8, ", exponent: 1"), (0.5, ", exponent: 2"), (0.15, "")] {
         let description = read(&format!(
             "
@@ -236,7 +236,7 @@ fn step_control_resolves_impacts() {
 
 /// Surfaces that are deep in one another all the time.
 #[test]
-fn elastic_surfaces_store_what_they_take() {
+fn stored_energy_of_elastic_surfaces_equals_work_done() {
     assert_balance(
         &pair(
             "",

@@ -68,7 +68,7 @@ fn arcs_join_edges_smoothly() {
 
 /// An image has its arcs on the other side.
 #[test]
-fn an_image_has_the_image_of_its_arcs() {
+fn mirrored_instance_has_mirrored_arcs() {
     for axis in ["x", "y"] {
         let bounds = nominal(&read(&format!(
             "

@@ -49,7 +49,7 @@ fn a_contact_that_is_too_soft_is_too_deep() {
 /// A ball at 20 m/s that meets a capsule of 10 mm by steps of 10 ms, hits it by shorter ones and by those of a
 /// tolerance, and flies past another one.
 #[test]
-fn what_passes_through_within_a_step_is_told() {
+fn missed_penetration_within_a_step_is_reported() {
     let wall = "capsule: [[0, -0.1, 0], [0, 0.1, 0]], rounding: 5 mm";
     let (bounds, summary) = flight(wall, "1e8", 20.0, "step: 0.01");
     let found = summary.too_deep.unwrap();
@@ -69,7 +69,7 @@ fn what_passes_through_within_a_step_is_told() {
 /// A ball of 1 kg and radius 5 mm over a floor of 10 kN/m: 4 mm within it, 40 N push it up and 9.81 N down; at
 /// 0.981 mm both balance, and 1 mm within they nearly do.
 #[test]
-fn an_overlap_at_the_start_is_told_where_nothing_presses() {
+fn unbalanced_overlap_at_the_start_is_reported() {
     let start = |initial: &str| {
         let (_, summary) = run_methods(
             &read(&format!(

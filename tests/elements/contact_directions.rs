@@ -43,7 +43,7 @@ fn a_puck_turns_towards_the_smooth_direction() {
 /// With the same coefficient along both axes the friction is isotropic; an axis off the plane counts by its projection
 /// onto the plane.
 #[test]
-fn alike_directions_are_no_directions() {
+fn equal_coefficients_give_isotropic_friction() {
     let plain = sliding(FRICTION, "plane: z");
     for along in [
         "friction_along: { direction: [1, 2, 0], coefficient: 0.6 }",
@@ -59,7 +59,7 @@ fn alike_directions_are_no_directions() {
 
 /// In an image the direction is mirrored, too.
 #[test]
-fn an_image_slides_as_the_mirror_shows() {
+fn mirrored_instance_slides_symmetrically() {
     let text = "
 space: spatial
 assemblies:

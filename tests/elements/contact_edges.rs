@@ -188,7 +188,7 @@ simulation: {{ duration: 1, step: 2e-4, output_step: 0.1 }}
 
 /// Edges and corners that penetrate each other deeply store the energy that they take.
 #[test]
-fn elastic_edges_store_what_they_take() {
+fn stored_energy_of_elastic_edges_equals_work_done() {
     for surface in [
         "path: [[-1, 0.3], [0.5, 0.2], [1.5, -0.5]], rounding: 1, radius: 1",
         "polygon: [[-0.5, -0.4], [0.6, -0.3], [0.1, 0.5]], rounding: 0.5, radius: 1",

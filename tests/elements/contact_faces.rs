@@ -65,7 +65,7 @@ fn a_cylinder_rolls_on_a_face_and_on_a_bar() {
 /// A body that stands over an edge tips if its middle is beyond the edge.
 #[test]
 #[ignore = "3 s"]
-fn what_stands_over_an_edge_tips_beyond_its_middle() {
+fn body_tips_if_its_centre_is_beyond_the_edge() {
     let cube = "box: [0.2, 0.2, 0.5]";
     for (shape, inertia) in [(UPRIGHT, OF_CYLINDER), (cube, "[0.0483, 0.0483, 0.0133]")] {
         // A box on a hull has the edges of a box on the block.
@@ -316,7 +316,7 @@ simulation: {{ duration: 1, step: {step:e}, output_step: {step:e} }}
 /// While balls about both bodies are apart, no pair costs more than 40 instructions a step.
 #[test]
 #[ignore = "4 s"]
-fn what_is_far_costs_a_comparison() {
+fn distant_contact_costs_one_comparison() {
     let model = |effect: &str| {
         read(&format!(
             "
@@ -353,7 +353,7 @@ simulation: {{ duration: 0.1, step: 1e-3 }}
 /// A mirrored instance has mirrored boxes, polyhedra and cylinders.
 #[test]
 #[ignore = "5 s"]
-fn an_image_moves_as_the_mirror_shows() {
+fn mirrored_instance_moves_symmetrically() {
     let rock =
         "hull: [[-0.3, -0.2, 0.2], [0.4, -0.1, 0.25], [0, 0.3, 0.3], [0.05, 0.05, 0.35], [0, 0, 0]], rounding: 0.02";
     for (axis, surface, shape) in [

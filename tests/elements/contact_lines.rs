@@ -161,7 +161,7 @@ simulation: { duration: 1, step: 5e-4, output_step: 0.05 }
 /// An edge against an edge, which corners alone do not find: a ridge that falls across another one bounces as a ball
 /// does.
 #[test]
-fn an_edge_meets_an_edge() {
+fn crossing_edges_collide() {
     let bounds = nominal(&read(
         "
 bodies:
@@ -226,7 +226,7 @@ simulation: { duration: 0.012, step: 2e-6, output_step: 1e-3 }
 
 /// A bar across two rails carries its weight by the law of the lever; an end of it lies on a plane.
 #[test]
-fn a_bar_on_rails_weighs_what_it_weighs() {
+fn rails_carry_the_weight_of_a_bar() {
     let law = "impact: { stiffness: 1e5, exponent: 1, dissipation: 20 }, friction: { coefficient: 0.5, transition_velocity: 5e-3 }";
     let line = "line: [[-0.5, 0, 0], [0.5, 0, 0]], radius: 0.02";
     let bounds = nominal(&read(&format!(
@@ -269,7 +269,7 @@ simulation: {{ duration: 1, step: 5e-4, output_step: 0.1 }}
 
 /// A mirrored instance has mirrored lines and cylinders.
 #[test]
-fn an_image_moves_as_the_mirror_shows() {
+fn mirrored_instance_moves_symmetrically() {
     let law = "impact: { stiffness: 1e5, dissipation: 0.3 }, friction: { coefficient: 0.2 }";
     for axis in ["x", "y"] {
         let sign = |letter: &str| if letter == axis { -1.0 } else { 1.0 };

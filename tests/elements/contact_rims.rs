@@ -65,7 +65,7 @@ fn a_cylinder_rolls() {
 
 /// Its gap is that of the deepest rim point, n·c − h/2 |cos θ| − r sin θ, at whatever angle.
 #[test]
-fn gaps_are_those_of_the_deepest_point() {
+fn gap_is_that_of_the_deepest_rim_point() {
     for angle in [0.05_f64, 0.4, 1.0, 1.5, 2.0, 2.9] {
         let bounds = nominal(&read(&format!(
             "

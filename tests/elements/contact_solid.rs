@@ -76,7 +76,7 @@ fn a_capsule_is_a_cylinder_and_two_spheres() {
 
 /// Across its edges a block is a polygon of the plane: a ball rolls over the edge, and one falls on it.
 #[test]
-fn edges_are_those_of_a_polygon() {
+fn edges_of_a_block_match_those_of_a_polygon() {
     for ([x, y], [vx, vy]) in [([0.35, 0.33], [0.8, 0.0]), ([0.53, 0.45], [-0.3, -1.0]), ([0.75, 0.05], [-1.5, 0.5])] {
         let motion = |space: &str, surface: &str, more: &str, inertia: &str, turn: &str| {
             nominal(&read(&format!(
@@ -190,7 +190,7 @@ simulation: {{ duration: 1, step: 1e-3, output_step: 0.1 }}
 
 /// A mirrored instance bounces off mirrored solids.
 #[test]
-fn an_image_moves_as_the_mirror_shows() {
+fn mirrored_instance_moves_symmetrically() {
     let bar = "capsule: [[-0.2, 0.1, 0.3], [0.3, 0, 0.3]]";
     let rock = "hull: [[-0.3, -0.2, 0.2], [0.4, -0.1, 0.25], [0, 0.3, 0.3], [0.05, 0.05, 0.35], [0, 0, 0]]";
     for (axis, surface) in [("x", bar), ("y", bar), ("x", rock), ("y", rock)] {

@@ -16,7 +16,7 @@ initial: { j.displacement: 0, j.angle: 0 }",
 compared_with_adams!(ADAMS);
 
 #[test]
-fn its_reactions_do_no_work() {
+fn reactions_do_no_work() {
     assert_balance(
         &spatial_pair(
             "  j: { cylindrical: { between: [a.P, b.P], axis: [1, 2, -0.5] } }",

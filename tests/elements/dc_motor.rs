@@ -20,7 +20,7 @@ simulation: {{ duration: 1, output_step: 0.005, {simulation} }}
 
 /// SciPy 1.17, `solve_ivp`, DOP853, rtol 1e-12: angle, rate and current.
 #[test]
-fn a_motor_starts_as_scipy_says() {
+fn motor_start_matches_scipy() {
     let wanted = [
         (0.005, [0.00016499, 0.09182161, 9.44945489]),
         (0.02, [0.00615432, 0.73976083, 14.07577025]),
@@ -42,7 +42,7 @@ fn a_motor_starts_as_scipy_says() {
 /// Without inductance: ω = U/(k N) (1 − e^(−t/T)) with T = J R/(k N)², so that its bounds are those of k; and a limit
 /// of 6 V.
 #[test]
-fn without_inductance_it_is_a_lag() {
+fn motor_without_inductance_is_a_lag() {
     for (motor, volts) in [("", 12.0), ("limit: 6", 6.0)] {
         let bounds = run(&read(&drive(motor, "step: 1e-3")));
         let rate = |k: f64, t: f64| volts / (20.0 * k) * (1.0 - (-t * (20.0 * k).powi(2) / 0.24).exp());

@@ -28,7 +28,7 @@ fn off(bounds: &Bounds, name: &str, from: f64, wanted: impl Fn(f64) -> f64) -> f
 /// A sine of x = ω T is met to n! (n−1)!/((2n)! (2n−1)!) x²ⁿ, the first term of the error of Padé's approximation, once
 /// it has settled.
 #[test]
-fn sines_come_late() {
+fn sines_are_delayed() {
     for (simulation, allowed) in [("step: 2e-4", 1e-6), ("scheme: explicit, tolerance: 1e-10", 1e-9)] {
         for (order, missed) in
             [(2, 2.0 / (24.0 * 6.0)), (3, 12.0 / (720.0 * 120.0)), (5, 2880.0 / (3_628_800.0 * 362_880.0))]
@@ -45,7 +45,7 @@ fn sines_come_late() {
 
 /// A ramp is late by T itself, whatever T.
 #[test]
-fn bounds_of_a_ramp_are_those_of_its_delay() {
+fn bounds_of_a_delayed_ramp_match_those_of_the_delay() {
     let bounds =
         run(&read(&text("slow: { delay: { input: t, time: late, order: 3 } }", "", "slow: slow", "step: 1e-3")));
     assert_eq!(output(&bounds, "slow").unit, "s");
@@ -88,7 +88,7 @@ fn a_loop_with_a_delay_moves_by_the_method_of_steps() {
 }
 
 #[test]
-fn it_begins_settled() {
+fn delay_starts_in_equilibrium() {
     let effects =
         "old: { delay: { input: m.x, time: late, initial: 0.5 m } }, slow: { delay: { input: m.x, time: late } }";
     let bounds = nominal(&read(&text(effects, "", "old: old, slow: slow", "step: 1e-3")));
@@ -140,7 +140,7 @@ fn by_old_values(time: f64) -> Vec<f64> {
 
 /// A delay as short as a step has fast poles, which nothing excites: the stated error is the steps' error.
 #[test]
-fn errors_of_short_delays_are_those_of_the_steps() {
+fn stated_error_of_short_delays_is_that_of_the_steps() {
     let bounds = run(&read(
         "
 parameters: { T: { value: 1 ms, tolerance: 20% } }

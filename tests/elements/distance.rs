@@ -54,7 +54,7 @@ guess: { a.y: 2 }",
 compared_with_adams!(ADAMS);
 
 #[test]
-fn its_reactions_do_no_work() {
+fn reactions_do_no_work() {
     assert_balance(
         &pair(
             "  j: { distance: { between: [a.P, b.P], length: 0.8 } }",

@@ -28,7 +28,7 @@ simulation: { duration: 3, step: 1e-3, output_step: 0.01 }
 }
 
 #[test]
-fn it_takes_force_times_speed() {
+fn dissipated_power_is_force_times_speed() {
     assert_balance(
         &pair("", "  e: { drag: { on: a.P, linear: 2, quadratic: 0.5 } }", APART),
         "-(2 + 0.5*sqrt(a.P.vx^2 + a.P.vy^2))*(a.P.vx^2 + a.P.vy^2)",

@@ -3,7 +3,7 @@
 use crate::common::power::{assert_balance, pair};
 
 #[test]
-fn its_power_is_force_times_rate() {
+fn power_is_force_times_rate() {
     assert_balance(
         &pair(
             "  j: { revolute: [a.P, b.P] }\n  drive: { equation: \"j.angle = 0.3 + sin(3*t)\" }",

@@ -48,7 +48,7 @@ fn filters_of_a_ramp_follow_their_closed_forms() {
 
 /// The lag is behind a ramp by more where τ is longer, the lead ahead of it by less.
 #[test]
-fn bounds_are_those_of_the_time_constant() {
+fn bounds_match_those_of_the_time_constant() {
     let effects = "lag: { filter: { input: t, numerator: [1], denominator: [tau, 1] } },
   lead: { filter: { input: t, numerator: [0.5 s, 1], denominator: [tau, 1] } }";
     let bounds = run(&read(&filters(effects, "lag: lag, lead: lead", "step: 1e-3")));
@@ -68,7 +68,7 @@ fn bounds_are_those_of_the_time_constant() {
 /// A Butterworth filter of order four with its corner at 5 rad/s; SciPy 1.17, `signal.tf2ss` and `solve_ivp`, DOP853,
 /// rtol 1e-13.
 #[test]
-fn a_filter_of_order_four_is_that_of_scipy() {
+fn filter_of_order_four_matches_scipy() {
     let effects = "smooth: { filter: { input: 0.3 + sin(4*t), numerator: [625],
   denominator: [1, 13.0656296, 85.3553391, 326.64074, 625] } }";
     let wanted = [(1, 0.29141782), (2, 1.09967865), (4, -0.25727896), (6, 0.11506627)];
@@ -84,7 +84,7 @@ fn a_filter_of_order_four_is_that_of_scipy() {
 /// A spring that acts on the filtered position: the filter starts settled at the mass's position. SciPy as above, with
 /// the filter in another form (a chain of rates, the output their sum).
 #[test]
-fn a_filter_within_the_loop_moves_as_scipy_says() {
+fn filter_in_a_closed_loop_matches_scipy() {
     let effects =
         "felt: { filter: { input: m.x, numerator: [0.05 s, 1], denominator: [0.01 s^2, 0.14 s, 1], initial: 0.5 m } },
   pull: { force: { on: m, value: [20 N/m*(0.2 m - felt) - 3 N*s/m*m.vx, 0] } }";
@@ -112,7 +112,7 @@ fn a_filter_within_the_loop_moves_as_scipy_says() {
 
 /// Any filter stays at its settled value: the gain times its constant input.
 #[test]
-fn a_settled_filter_stays() {
+fn settled_filter_stays_constant() {
     for (numerator, denominator, gain) in [
         ("[1]", "[tau, 1]", 1.0),
         ("[0.5 s, 3]", "[0.02 s^2, tau, 2]", 1.5),
@@ -159,7 +159,7 @@ simulation: { duration: 1, step: 1e-3, output_step: 0.5 }
 /// A filter that rings faster than the steps are long, from a start that is not settled: the steps damp it, halved ones
 /// too, and the error contains this.
 #[test]
-fn steps_that_damp_a_ringing_filter_say_so() {
+fn error_contains_damping_of_a_ringing_filter() {
     let (omega, damping) = (5e3_f64, 1e-4);
     let bounds = run(&read(&format!(
         "

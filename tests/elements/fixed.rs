@@ -3,7 +3,7 @@
 use crate::common::power::{assert_balance, pair, spatial_pair};
 
 #[test]
-fn its_reactions_do_no_work() {
+fn reactions_do_no_work() {
     assert_balance(
         &pair(
             "  j: { fixed: { between: [a.P, b.P], angle: 0.3 } }",
@@ -23,7 +23,7 @@ fn its_reactions_do_no_work() {
 }
 
 #[test]
-fn a_clamp_carries_its_beam_about_any_point_and_in_its_own_axes() {
+fn clamp_carries_its_beam_about_any_point() {
     // A beam of 3 kg and 2 m, clamped at 30° at its left end, which is 1 m right of the origin.
     let bounds = crate::common::nominal(&crate::common::read(
         "
@@ -59,7 +59,7 @@ simulation: { duration: 0.1, step: 1e-2 }
 }
 
 #[test]
-fn a_clamp_in_space_carries_its_beam_about_any_point_and_in_its_own_axes() {
+fn clamp_in_space_carries_its_beam_about_any_point() {
     // The same beam, turned about the ground's z and seen from a frame that is turned about its own x by a quarter.
     for formulation in ["absolute", "joint"] {
         let bounds = crate::common::nominal(&crate::common::read(&format!(

@@ -41,7 +41,7 @@ fn last(bounds: &Bounds, name: &str) -> f64 {
 
 /// P L³/3EI and P L²/2EI; q L⁴/8EI and q L³/6EI: of one element already.
 #[test]
-fn a_cantilever_bends_by_the_textbook() {
+fn deflection_of_a_cantilever_matches_the_textbook() {
     for elements in [1, 2, 5] {
         let bounds = rest(elements, 1e4, "{ force: { on: rod.end, value: [0, -1e-3] } }");
         let (y, angle) = (last(&bounds, "y"), last(&bounds, "angle"));
@@ -60,7 +60,7 @@ fn a_cantilever_bends_by_the_textbook() {
 
 /// P L³/3EI + P L/GA, and P L²/2EI: of one element already.
 #[test]
-fn a_cantilever_that_shears_bends_by_the_textbook() {
+fn deflection_by_shear_matches_the_textbook() {
     for elements in [1, 3] {
         let bounds = nominal(&read(&format!(
             "

@@ -46,7 +46,7 @@ simulation: {{ duration: 1, step: 0.1 }}
 }
 
 #[test]
-fn natural_frequencies_are_those_of_the_textbook() {
+fn natural_frequencies_match_the_textbook() {
     let clamped = ["rod.start.x", "rod.start.y", "rod.start.angle"];
     let pinned = ["rod.start.x", "rod.start.y", "rod.end.y"];
     for (name, held, roots) in [
@@ -206,7 +206,7 @@ simulation: {{ duration: 20, step: 5e-3, output_step: 0.05 }}
 /// A beam between two clamps: the start's conditions and the constraints say the same of it, and it swings with 4.730²
 /// √(EI/μL⁴). Clamps that are too near to one another are reported.
 #[test]
-fn a_beam_starts_straight_or_says_why_not() {
+fn clamped_beam_starts_straight_or_is_refused() {
     let clamped = |apart: f64| {
         read(&format!(
             "

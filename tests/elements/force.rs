@@ -3,7 +3,7 @@
 use crate::common::power::{APART, APART_IN_SPACE, assert_balance, pair, spatial_pair};
 
 #[test]
-fn its_power_is_that_of_its_point() {
+fn power_is_force_times_velocity_of_its_point() {
     assert_balance(
         &pair("", "  e: { force: { on: a.P, value: [\"3 + 1*t\", \"-2*b.x\"] } }", APART),
         "(3 + t)*a.P.vx - 2*b.x*a.P.vy",

@@ -21,7 +21,7 @@ simulation: {{ duration: 1, output_step: 0.1, {simulation} }}
 
 /// SciPy 1.17, `solve_ivp`, DOP853, rtol 1e-12: angle and rate of a lid with 0.5 kg m² about its hinge.
 #[test]
-fn a_lid_opens_as_scipy_says() {
+fn motion_of_a_lid_matches_scipy() {
     let wanted = [(0.2, [0.28209002, 2.23507505]), (0.5, [0.81744143, 0.96517115]), (1.0, [0.52246937, -2.06288989])];
     for (simulation, allowed) in [("step: 2e-4", 1e-5), ("scheme: explicit, tolerance: 1e-9", 1e-6)] {
         let bounds = nominal(&read(&lid(simulation)));
@@ -55,7 +55,7 @@ fn pressure_follows_the_law_of_the_gas() {
 
 /// About its balance a mass oscillates with ω² = n p A²/(V m), so that its bounds are those of n.
 #[test]
-fn small_oscillations_tell_the_exponent() {
+fn frequency_of_small_oscillations_gives_the_exponent() {
     let text = "
 parameters: { n: { interval: [1.2, 1.4] } }
 bodies: { piston: { mass: 2, coordinates: [y] } }
@@ -79,7 +79,7 @@ simulation: { duration: 0.3, step: 2e-4, output_step: 0.01 }
 
 /// In an image it pushes to the other side.
 #[test]
-fn an_image_moves_as_the_mirror_shows() {
+fn mirrored_instance_moves_symmetrically() {
     let text = "
 assemblies:
   lid:
@@ -100,7 +100,7 @@ simulation: { duration: 0.3, step: 1e-3, output_step: 0.02 }
 /// Bodies whose coordinates start at zero in general position: there the gas has no volume, and a logarithm no value.
 /// Accelerations are those of the force at the start.
 #[test]
-fn a_start_beyond_which_forces_have_no_number_is_a_start() {
+fn start_with_undefined_forces_nearby_is_accepted() {
     let area = std::f64::consts::FRAC_PI_4 * 0.015_f64.powi(2);
     let wanted = [(30e5 - 101_325.0) * area / 25.0, -7.0 * 0.4_f64.ln() / 25.0];
     let springs = [

@@ -31,7 +31,7 @@ simulation: { duration: 1, step: 0.01, output_step: 0.1 }
 }
 
 #[test]
-fn its_reactions_do_no_work() {
+fn reactions_do_no_work() {
     assert_balance(
         &pair(
             "  j: { gear: { between: [a, b], ratio: -2, offset: 0.1 } }",

@@ -25,7 +25,7 @@ simulation: { duration: 2, step: 0.01, output_step: 0.1 }
 
 /// Gravity stores the kinetic energy that it takes.
 #[test]
-fn weight_stores_what_it_takes() {
+fn stored_energy_equals_work_done() {
     assert_balance(&pair("", "", APART), "0");
     assert_balance(&spatial_pair("", "", APART_IN_SPACE), "0");
 }

@@ -24,7 +24,7 @@ simulation: {{ output_step: 0.05, {simulation} }}
 /// SciPy 1.17, `solve_ivp`, DOP853, rtol 1e-12 (Radau at 1e-9 agrees in seven digits): position, velocity and
 /// pressures.
 #[test]
-fn a_cylinder_behind_its_valve_moves_as_scipy_says() {
+fn motion_behind_a_valve_matches_scipy() {
     let wanted = [
         (0.1, [0.808368409, 0.174975986, 5117954.88, 4434846.38]),
         (0.25, [0.845200127, 0.288332108, 4558568.08, 4471624.97]),
@@ -128,7 +128,7 @@ fn an_open_valve_gives_a_steady_speed() {
 
 /// A mirrored instance pushes to the other side.
 #[test]
-fn an_image_moves_as_the_mirror_shows() {
+fn mirrored_instance_moves_symmetrically() {
     let text = "
 assemblies:
   lift:

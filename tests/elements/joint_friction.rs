@@ -11,7 +11,7 @@ use crate::common::{
 
 /// On a slope: s̈ = g (sin β − μ cos β), down and up.
 #[test]
-fn a_block_on_an_incline_feels_its_own_normal_force() {
+fn friction_on_an_incline_follows_the_normal_force() {
     let (beta, mu): (f64, f64) = (30.0_f64.to_radians(), 0.3);
     for speed in [1.0_f64, -3.0] {
         let bounds = nominal(&read(&format!(
@@ -43,7 +43,7 @@ simulation: {{ duration: 0.3, step: 1e-3, output_step: 0.01 }}
 /// A pendulum whose pin rubs: the load hangs on the acceleration, which hangs on the friction. The same two equations,
 /// solved by iteration and integrated by Runge and Kutta's scheme.
 #[test]
-fn a_pendulum_with_friction_in_its_pin_agrees_with_runge_kutta() {
+fn pendulum_with_pin_friction_matches_runge_kutta() {
     let (m, l, inertia, g, mu, r, u0) = (2.0_f64, 0.4_f64, 0.05_f64, 9.81_f64, 0.4_f64, 0.05_f64, 0.05_f64);
     let description = read(&format!(
         "
@@ -100,7 +100,7 @@ simulation: {{ duration: 2, step: 1e-3, output_step: 0.01 }}
 /// A drawer that is pulled off its middle: the couple F e presses on both ends of a guide of length L, and
 /// m a = F (1 − 2 μ e/L).
 #[test]
-fn a_drawer_sticks_by_the_couple_on_its_guide() {
+fn couple_on_its_guide_brakes_a_drawer() {
     let (force, arm, length, mu, m) = (10.0, 0.15, 0.3, 0.4, 2.0);
     let bounds = nominal(&read(&format!(
         "
@@ -188,7 +188,7 @@ bounds: { chebyshev: { order: 5 }, taylor: { order: 4 }, scan: { points: 21 } }
 }
 
 #[test]
-fn it_takes_torque_times_rate() {
+fn dissipated_power_is_torque_times_rate() {
     assert_balance(
         &pair(
             "  j: { revolute: [a.P, b.P] }",

@@ -38,7 +38,7 @@ fn every_element_has_its_tests() {
 
 /// A build that is older than a file of this folder would pass without its tests.
 #[test]
-fn every_file_takes_part() {
+fn every_file_is_part_of_the_build() {
     let tests = std::process::Command::new(std::env::current_exe().unwrap()).arg("--list").output().unwrap();
     let tests = String::from_utf8(tests.stdout).unwrap();
     for file in files() {

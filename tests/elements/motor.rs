@@ -131,7 +131,7 @@ fn a_motor_turns_at_a_speed_that_is_a_formula() {
 
 /// A lift that a motor raises along z: it carries the weight.
 #[test]
-fn a_motor_carries_what_it_moves_in_space() {
+fn motor_in_space_carries_the_weight_of_a_lift() {
     let bounds = nominal(&read(
         "
 bodies: { cage: { mass: 3, inertia: [1, 1, 1] } }
@@ -169,7 +169,7 @@ simulation: { duration: 2, step: 1e-3, output_step: 0.1 }
 }
 
 #[test]
-fn its_power_is_torque_times_rate() {
+fn power_is_torque_times_rate() {
     assert_balance(
         &pair(
             "  j: { revolute: [a.P, b.P] }\n  drive: { motor: { on: j, position: 0.3 + sin(3*t) } }",
@@ -182,7 +182,7 @@ fn its_power_is_torque_times_rate() {
 
 /// A motor's torque and force in space have the sign of the joint's axis, and are those of Newton's law.
 #[test]
-fn its_torque_and_force_have_signs_in_space() {
+fn torque_and_force_in_space_have_the_sign_of_the_axis() {
     let ask = |formulation: &str| {
         nominal(&read(&format!(
             "
@@ -220,7 +220,7 @@ simulation: {{ duration: 2, step: 1e-3, output_step: 0.1, formulation: {formulat
 /// Motors that begin alike and part: on two hinges with one axis, and on bodies that gears couple. They are beyond 1e-4
 /// rad where 0.2 t³ is, after eight steps; where both say the same, one is redundant and nothing is wrong.
 #[test]
-fn motors_that_part_are_an_error_with_the_time() {
+fn diverging_motors_are_reported_with_the_time() {
     let hinges = |more: &str| {
         format!(
             "

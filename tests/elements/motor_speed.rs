@@ -71,7 +71,7 @@ fn a_pendulum_follows_a_speed_behind_a_lag() {
 }
 
 #[test]
-fn bounds_over_the_lag_are_those_of_the_closed_form() {
+fn bounds_over_the_lag_match_the_closed_form() {
     for simulation in ["step: 2e-3, extrapolation: 4", "scheme: explicit, tolerance: 1e-10"] {
         let bounds = run(&read(&pendulum(simulation)));
         for method in [Method::Chebyshev, Method::Taylor, Method::Scan] {
@@ -159,7 +159,7 @@ bounds: {{ chebyshev: {{ order: 4 }}, taylor: {{ order: 4 }} }}
 /// A crank that a lagging command turns is the same as one whose speed is prescribed as the command is: another
 /// constraint, of positions.
 #[test]
-fn a_slider_crank_follows_a_command_as_if_it_were_prescribed() {
+fn followed_and_prescribed_speed_give_the_same_motion() {
     let filter = "command: { filter: { input: 12 rad/s, numerator: [1], denominator: [0.1 s, 1] } }";
     for (simulation, of_motion, of_forces) in WAYS {
         for formulation in ["absolute", "joint"] {
@@ -218,7 +218,7 @@ fn two_motors_agree_or_contradict() {
 
 /// A number held by a digital controller makes ramps of the speed: ẏ = 10 k T in the k-th period of T = 0.1 s.
 #[test]
-fn a_held_number_makes_ramps_of_the_speed() {
+fn sampled_number_gives_piecewise_linear_speed() {
     let acceleration = |t: f64| ((t + 1e-9) / 0.1).floor();
     let rate = |t: f64| {
         let (periods, rest) = (acceleration(t), t - 0.1 * acceleration(t));

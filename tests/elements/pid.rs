@@ -21,7 +21,7 @@ simulation: {{ duration: 3, output_step: 0.5, {simulation} }}
 /// SciPy 1.17, `solve_ivp`, DOP853, rtol 1e-12: angle, rate, integral and filtered rate of the error; with T_t =
 /// k_p/k_i the limit of 6 N m makes it overshoot by a fifth, with 0.1 s hardly.
 #[test]
-fn a_limited_controller_moves_as_scipy_says() {
+fn limited_controller_matches_scipy() {
     let own = [
         (1, [1.09795697, 1.95834415, 5.36586225, -2.16382639]),
         (2, [1.18738658, -0.55941133, 1.67023194, 0.56135745]),
@@ -53,7 +53,7 @@ fn a_limited_controller_moves_as_scipy_says() {
 
 /// Without filter and limit it equals three lines of `states` and `torque`; the gain is uncertain in both.
 #[test]
-fn it_is_what_states_write_out() {
+fn controller_matches_equivalent_states() {
     let bounds = run(&read(&arm("initial: 2 N*m", "step: 1e-3", "")));
     let written = "
 parameters: { ki: { value: 30, tolerance: 10% } }

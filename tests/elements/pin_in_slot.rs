@@ -6,7 +6,7 @@ use crate::common::power::{assert_balance, pair};
 use crate::common::{largest, model, nominal};
 
 #[test]
-fn the_yoke_is_where_the_pin_is() {
+fn yoke_follows_the_pin() {
     let bounds = nominal(&model("scotch_yoke").observing(&["yoke.x - radius*cos(wheel.angle)", "wheel.angle"]));
     assert!(largest(bounds.outputs[0].nominal.iter().copied()) < 1e-12);
     // Several turns were made, so that the comparison is meaningful.
@@ -14,7 +14,7 @@ fn the_yoke_is_where_the_pin_is() {
 }
 
 #[test]
-fn its_reactions_do_no_work() {
+fn reactions_do_no_work() {
     assert_balance(
         &pair(
             "  j: { pin_in_slot: { between: [a.P, b.P], axis: [1, 2] } }",

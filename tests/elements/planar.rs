@@ -3,7 +3,7 @@
 use crate::common::power::{assert_balance, spatial_pair};
 
 #[test]
-fn its_reactions_do_no_work() {
+fn reactions_do_no_work() {
     assert_balance(
         &spatial_pair(
             "  j: { planar: { between: [a.P, b.P], normal: [1, 2, -0.5] } }",

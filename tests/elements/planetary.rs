@@ -65,7 +65,7 @@ fn two_members_turn_in_a_ratio() {
 /// Planets that spin: a body with an angle alone, by an equation. With ρ = 3 planets and sun have the same number of
 /// teeth, so that ω_p = 2 ω_c − ω_s = −ω_s/2 if the ring is fixed.
 #[test]
-fn spinning_planets_are_a_body_of_their_own() {
+fn spinning_planets_are_a_separate_body() {
     let of_planets = 0.09;
     let joints = "  jsun: { revolute: [ground, sun] }\n  jcarrier: { revolute: [ground, carrier] }
   spin: { equation: planets.angle = jcarrier.angle - (jsun.angle - jcarrier.angle)*20/20 }\n";
@@ -92,7 +92,7 @@ fn three_members_share_the_torque() {
 
 /// A joint that counts from the wheel to the housing is as good.
 #[test]
-fn joints_may_count_either_way() {
+fn joints_may_have_either_direction() {
     let joints = "  js: { revolute: [sun, ground] }\n  jc: { revolute: [ground, carrier] }\n";
     let bounds = nominal(&read(&text(&["sun", "carrier"], joints, "{ sun: js, carrier: jc, ratio: 3 }")));
     let acceleration = DRIVE / (INERTIA[0] + INERTIA[2] / 16.0);
@@ -101,7 +101,7 @@ fn joints_may_count_either_way() {
 }
 
 #[test]
-fn what_is_no_set_is_refused() {
+fn incomplete_sets_are_refused() {
     let joints = "  js: { revolute: [ground, sun] }\n  jc: { revolute: [sun, carrier] }\n";
     for (set, message) in [
         ("{ sun: js, ratio: 3 }", "one wheel alone is no planetary set"),
@@ -115,7 +115,7 @@ fn what_is_no_set_is_refused() {
 
 /// Models that can be read, but whose axes make no planetary set when they are assembled.
 #[test]
-fn axes_have_to_be_parallel_and_on_one_body() {
+fn axes_must_be_parallel_and_on_one_body() {
     let model = |joints: &str, set: &str| {
         read(&format!(
             "

@@ -3,7 +3,7 @@
 use crate::common::power::{assert_balance, spatial_pair};
 
 #[test]
-fn its_reactions_do_no_work() {
+fn reactions_do_no_work() {
     assert_balance(
         &spatial_pair(
             "  j: { point_on_line: { between: [a.P, b.P], axis: [1, 2, -0.5] } }",

@@ -5,7 +5,7 @@ use crate::common::{read, run};
 
 /// The orientation depends on h, which is uncertain, and the Euler parameters' rates on both; ω is preserved.
 #[test]
-fn an_angular_velocity_is_kept_where_assembly_finds_the_orientation() {
+fn assembly_of_the_orientation_keeps_angular_velocity() {
     let description = read(
         "
 parameters: { h: { value: 0.5, unit: m, tolerance: 10% } }
@@ -35,7 +35,7 @@ bounds: { chebyshev: { order: 6 }, taylor: { order: 4 }, scan: { points: 9 } }
 }
 
 #[test]
-fn its_reactions_do_no_work() {
+fn reactions_do_no_work() {
     assert_balance(
         &spatial_pair(
             "  j: { point_on_plane: { between: [a.P, b.P], normal: [1, 2, -0.5] } }",

@@ -32,7 +32,7 @@ simulation: { duration: 4, step: 1e-3, output_step: 0.1 }
 }
 
 #[test]
-fn it_stores_what_it_takes() {
+fn stored_energy_equals_work_done() {
     assert_balance(&pair("", "  e: { preload: { between: [a.P, b.P], value: 17 } }", APART), "0");
     assert_balance(&spatial_pair("", "  e: { preload: { between: [a.P, b.P], value: 17 } }", APART_IN_SPACE), "0");
 }

@@ -54,7 +54,7 @@ initial: { j.displacement: 0 }",
 compared_with_adams!(ADAMS);
 
 #[test]
-fn its_reactions_do_no_work() {
+fn reactions_do_no_work() {
     assert_balance(
         &pair(
             "  j: { prismatic: { between: [a.P, b.P], axis: [1, 2], angle: 0.3 } }",

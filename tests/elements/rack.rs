@@ -52,7 +52,7 @@ simulation: { duration: 1, step: 2e-3, output_step: 0.1, formulation: absolute }
 }
 
 #[test]
-fn its_reactions_do_no_work() {
+fn reactions_do_no_work() {
     assert_balance(
         "
 bodies:

@@ -21,7 +21,7 @@ simulation: {{ duration: 3, output_step: 0.25, {simulation} }}
 
 /// SciPy 1.17, `solve_ivp`, DOP853, rtol 1e-12.
 #[test]
-fn it_follows_as_scipy_says() {
+fn response_matches_scipy() {
     let wanted = [
         (0.25, 0.21942987),
         (0.5, 0.39092721),
@@ -54,7 +54,7 @@ fn a_step_becomes_a_ramp() {
 /// In loop with a state that depends on it: a position drive whose command cannot jump; the same written out by
 /// `states`.
 #[test]
-fn it_is_what_states_write_out() {
+fn rate_limit_matches_equivalent_states() {
     let own = follower("input: (2 - cart.x)/(1 m), lag: 20 ms", "step: 1e-3");
     let written = own.replace("effects:\n", "states: { command: { rate: \"0.5*(sqrt((((2 - cart.x)/(1 m) - command)/(20 ms) + r)^2 + (0.01*r)^2) - sqrt((((2 - cart.x)/(1 m) - command)/(20 ms) - r)^2 + (0.01*r)^2))\", initial: 0 } }\neffects:\n");
     let start = written.find("  command: {").unwrap();

@@ -84,7 +84,7 @@ initial: { a.orientation: { axis: x, angle: -90 deg } }",
 compared_with_adams!(ADAMS);
 
 #[test]
-fn its_reactions_do_no_work() {
+fn reactions_do_no_work() {
     assert_balance(
         &pair(
             "  j: { revolute: [a.P, b.P] }",

@@ -46,7 +46,7 @@ bounds: { chebyshev: { order: 5 } }
 /// A plank of 3 kg is pulled by 5 N from under a solid cylinder of 2 kg: the plank has the acceleration F/(M + m/3),
 /// the cylinder's centre a third of it.
 #[test]
-fn a_plank_takes_a_cylinder_with_it() {
+fn moving_plank_drags_a_rolling_cylinder() {
     let bounds = nominal(&read(
         "
 bodies:
@@ -70,7 +70,7 @@ simulation: { duration: 1, step: 1e-3, output_step: 0.1 }
 }
 
 #[test]
-fn its_reactions_do_no_work() {
+fn reactions_do_no_work() {
     for joint in [
         "  j: { rolling: { between: [a.P, b], axis: [1, 2], radius: 0.2, offset: 0.1 } }",
         "  j: { rolling: { between: [a.P, b], axis: [-1, 0.3], radius: 0.3 } }\n  hinge: { revolute: [ground.O, a] }",

@@ -143,7 +143,7 @@ fn rolling_coin(tilt: f64, omega: [f64; 3], rows: usize) -> Vec<[f64; 7]> {
 }
 
 #[test]
-fn a_coin_wobbles_by_the_newton_euler_equations() {
+fn wobbling_coin_matches_newton_euler_equations() {
     let (tilt, omega) = (1.0, [0.3, 1.5, -9.0]);
     let exact = rolling_coin(tilt, omega, 41);
     let wanted = |index: usize| exact.iter().map(|row| row[index]).collect::<Vec<f64>>();
@@ -234,7 +234,7 @@ fn a_coin_keeps_its_energy_and_does_not_slip() {
 
 /// On a body that is thrown, about an axle that is askew.
 #[test]
-fn its_reactions_do_no_work() {
+fn reactions_do_no_work() {
     for (joint, kept) in [
         ("between: [a.P, b], normal: [1, 2, -0.5], axle: [0.3, 1, 2], radius: 0.2", &["b.orientation", "b.omega"][..]),
         ("between: [a.P, b.P], normal: [-1, 0.3, 1], radius: 0.3", &["b.orientation", "b.omega"]),
@@ -291,7 +291,7 @@ simulation: { duration: 2, step: 1e-3, output_step: 0.1 }
 }
 
 #[test]
-fn certified_bounds_refuse_it_in_words() {
+fn certified_bounds_refuse_rolling_with_a_reason() {
     let description = read(
         "
 parameters: { r: { value: 0.1 m, tolerance: 1% } }

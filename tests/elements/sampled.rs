@@ -69,7 +69,7 @@ fn a_held_force_moves_a_mass_by_its_difference_equation() {
 
 /// Bounds of all methods, over the tolerance of the gain.
 #[test]
-fn bounds_are_those_of_the_difference_equation() {
+fn bounds_match_the_difference_equation() {
     for simulation in ["step: 2e-3, output_step: 0.05", "scheme: explicit, tolerance: 1e-9, output_step: 0.05"] {
         let bounds = run(&read(&text(FEEDBACK, "", OUTPUTS, simulation)));
         assert_eq!(output(&bounds, "command").unit, "N");
@@ -114,7 +114,7 @@ fn deadbeat_control_brings_a_mass_to_rest_in_two_periods() {
 
 /// A number that refers to itself is the memory of a difference equation; other numbers see the value held until then.
 #[test]
-fn sampled_numbers_remember() {
+fn sampled_numbers_have_memory() {
     let effects = "
   count: { sampled: { input: count + 1, period: 0.02 } }
   before: { sampled: { input: count, period: 40 ms, initial: -7 } }
@@ -182,7 +182,7 @@ bounds: {{ taylor: {{ order: 1 }} }}
 
 /// Samples that meet a stop at their own times take their own steps; at the instants they change as all others do.
 #[test]
-fn samples_that_step_alone_change_with_the_others() {
+fn samples_with_own_steps_change_at_common_instants() {
     let effects = "
   floor: { contact: { between: [ground, m], plane: x, impact: { stiffness: 2e4, exponent: 1, dissipation: 0.5 } } }
   pull: { force: { on: m, value: [-10, 0] } }

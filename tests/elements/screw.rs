@@ -42,7 +42,7 @@ simulation: { duration: 4, step: 1e-2, output_step: 0.1 }
 }
 
 #[test]
-fn its_reactions_do_no_work() {
+fn reactions_do_no_work() {
     assert_balance(
         &spatial_pair(
             "  j: { screw: { between: [a.P, b.P], axis: [0, 1, 0.2], pitch: 0.3 } }",

@@ -67,7 +67,7 @@ simulation: {{ duration: 1e-3, step: 1e-3 }}
 }
 
 #[test]
-fn its_power_is_torque_times_rate() {
+fn power_is_torque_times_rate() {
     assert_balance(
         &pair(
             "  j: { revolute: [a.P, b.P] }",

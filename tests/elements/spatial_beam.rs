@@ -56,7 +56,7 @@ fn tip(bounds: &Bounds) -> [f64; 3] {
 
 /// P L³/3EI + P L/GA along both axes and T L/GJ, of one element already.
 #[test]
-fn a_cantilever_bends_and_twists_by_the_textbook() {
+fn bending_and_torsion_match_the_textbook() {
     for (elements, shear) in [(1, None), (2, Some(40.0)), (4, Some(40.0))] {
         let stiffness = Stiffness { axial: 1e4, torsional: 0.5, bending: [2.0, 1.0], shear };
         let softer = shear.map_or(0.0, |shear| 1.0 / shear);
@@ -136,7 +136,7 @@ fn a_round_cantilever_bends_far_like_the_elastica() {
 /// As in the experiments at Princeton (Dowell & Traybar, AMRDL TR 75-71): a blade that is soft one way, loaded askew,
 /// twists.
 #[test]
-fn a_blade_that_is_loaded_askew_twists() {
+fn obliquely_loaded_blade_twists() {
     for shear in [None, Some(50.0)] {
         let stiffness = Stiffness { axial: 1e5, torsional: 1.2, bending: [1.0, 8.0], shear };
         let errors = errors(stiffness, [0.0, -3.0, -1.5]);
@@ -223,7 +223,7 @@ fn a_blade_buckles_sideways() {
 
 /// β² √(EI/μ)/2π both ways, and ¼ √(GJ/i) of torsion.
 #[test]
-fn a_blade_has_the_frequencies_of_the_textbook() {
+fn frequencies_of_a_blade_match_the_textbook() {
     let bounds = nominal(&read(
         "
 space: spatial
@@ -293,7 +293,7 @@ simulation: { duration: 3, step: 1e-3, output_step: 0.1, alpha: -0.02 }
 /// The block of `models/spatial_slider_crank_flexible.yaml` is where a rigid rod has it, up to the shortening of the
 /// bent rod.
 #[test]
-fn a_rod_that_bends_little_moves_its_block_as_a_rigid_one() {
+fn block_on_a_stiff_rod_moves_as_on_a_rigid_rod() {
     let bounds = nominal(&common::model("spatial_slider_crank_flexible"));
     let rigid = |t: f64| {
         let (sin, cos) = (60.0 * t).sin_cos();

@@ -16,7 +16,7 @@ initial: { a.orientation: { axis: x, angle: 0 } }",
 compared_with_adams!(ADAMS);
 
 #[test]
-fn its_reactions_do_no_work() {
+fn reactions_do_no_work() {
     assert_balance(
         &spatial_pair(
             "  j: { spherical: [a.P, b.P] }",

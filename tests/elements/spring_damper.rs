@@ -95,7 +95,7 @@ initial: { a.orientation: { axis: x, angle: 0 }, a.x: 0, a.y: 0, a.z: 0 }",
 compared_with_adams!(ADAMS);
 
 #[test]
-fn a_spring_stores_and_a_damper_takes() {
+fn springs_store_and_dampers_dissipate_energy() {
     assert_balance(
         &pair("", "  e: { spring_damper: { between: [a.P, b.P], stiffness: 50, free_length: 0.4 } }", APART),
         "0",

@@ -47,7 +47,7 @@ fn the_scheme_is_of_order_two() {
 }
 
 #[test]
-fn the_explicit_method_and_extrapolated_steps_take_states() {
+fn explicit_and_extrapolated_steps_integrate_states() {
     for (simulation, allowed) in [
         ("scheme: explicit, tolerance: 1e-9, output_step: 0.1", 2e-9),
         ("step: 1e-2, extrapolation: 4, output_step: 0.1", 1e-9),
@@ -60,7 +60,7 @@ fn the_explicit_method_and_extrapolated_steps_take_states() {
 
 /// The lag falls as its time constant grows, so that the ends of its range are those of the tolerance.
 #[test]
-fn every_method_bounds_them() {
+fn every_method_bounds_states() {
     let bounds = run(&read(&lag("step: 1e-3, output_step: 0.1")));
     for method in [Method::Chebyshev, Method::Taylor, Method::Scan] {
         let band = band(output(&bounds, "lag"), method);
@@ -75,7 +75,7 @@ fn every_method_bounds_them() {
 
 /// A mass of 2 kg under proportional, integral and derivative control: SciPy 1.16, `solve_ivp`, DOP853, rtol 1e-13.
 #[test]
-fn a_controlled_mass_moves_as_scipy_says() {
+fn controlled_mass_matches_scipy() {
     let text = |simulation: &str| {
         format!(
             "
@@ -128,7 +128,7 @@ outputs: { balance: energy - work, angle: elbow.angle, work: work }
 ";
 
 #[test]
-fn energy_is_what_a_state_integrates() {
+fn integrated_power_equals_the_energy() {
     for (simulation, allowed) in [
         ("tolerance: 1e-8", 1e-7),
         ("step: 5e-4, extrapolation: 3, formulation: absolute", 1e-5),

@@ -34,7 +34,7 @@ simulation: { duration: 1.2, step: 5e-5, output_step: 1e-4 }
 
 /// Pressed all the time.
 #[test]
-fn an_elastic_stop_stores_what_it_takes() {
+fn stored_energy_equals_work_done() {
     assert_balance(
         &pair(
             "  j: { revolute: [a.P, b.P] }",

@@ -37,7 +37,7 @@ const FREE: &str = "s: 1";
 
 /// P L³/3EI, P L²/2EI, T L/GJ: by constraint modes alone. The stiffness is uncertain, so bounds are those of 1/s.
 #[test]
-fn a_cantilever_bends_and_twists_by_the_textbook() {
+fn bending_and_torsion_match_the_textbook() {
     let description = cantilever(
         3,
         "s: { interval: [0.8, 1.2] }",
@@ -73,7 +73,7 @@ effects:
 
 /// ω = λ² √(EI/μ)/L², cos λ cosh λ = −1; along and about x π/2 √(EA/μ)/L and π/2 √(GJ/I)/L.
 #[test]
-fn a_cantilever_vibrates_as_the_textbook_says() {
+fn frequencies_of_a_cantilever_match_the_textbook() {
     let description =
         cantilever(12, FREE, "analysis: modes\nmodes: { at: start, number: 6 }\noutputs: { y: tip.y }\neffects:");
     let bounds = nominal(&description);
@@ -206,7 +206,7 @@ fn the_strip_of_the_page_moves_like_a_beam() {
 
 /// A free rod flies and spins in space: the centre moves steadily, and it turns about itself as one that does not fly.
 #[test]
-fn a_flying_body_deforms_as_one_that_spins_in_place() {
+fn translation_leaves_deformation_unchanged() {
     let soft = Beam { length: 0.8, axial: 2e4, bending: [6.0, 9.0], torsional: 4.5, mass: 1.2, turning: 1e-3 };
     let matrices = between_ends(&soft, 4);
     let spins = |velocity: [f64; 3]| {
@@ -232,7 +232,7 @@ simulation: {{ duration: 0.3, step: 2e-4, output_step: 0.03 }}
 
 /// ½ ρA ω² (l² − x²) pulls at x of a rod that spins about its middle, by which each half is longer by ρA ω² l³/3EA.
 #[test]
-fn a_spinning_rod_stretches_by_the_textbook() {
+fn elongation_of_a_spinning_rod_matches_the_textbook() {
     let rod = Beam { length: 0.8, axial: 3e4, bending: [4e3, 4e3], torsional: 10.0, mass: 1.2, turning: 1e-3 };
     let matrices = between_ends(&rod, 0);
     let omega = 20.0;

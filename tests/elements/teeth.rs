@@ -260,7 +260,7 @@ simulation: { duration: 0.01, step: 1e-3, output_step: 0.01 }
 
 /// Friction of a bearing grows with the load of the teeth on it.
 #[test]
-fn friction_feels_the_teeth() {
+fn bearing_friction_grows_with_the_tooth_load() {
     let text = "
 bodies:
   ground: { points: { B: [0.15, 0] } }

@@ -40,7 +40,7 @@ joints: { one: { revolute: [ground, first] }, two: { revolute: [ground, second] 
 
 /// The driven gear gets the share η of the other's power: T₁ = α₁ (J₁ + i² J₂/η), and i T₂ = α₁ (J₁/η + i² J₂).
 #[test]
-fn the_driven_gear_gets_its_share_whichever_drives() {
+fn efficiency_holds_for_either_driving_gear() {
     let [first, second] = INERTIA;
     let bodies = GEARS.replace("between: [one, two]", "between: [first, second]");
     for (parts, formulation) in [(GEARS, "absolute"), (GEARS, "joint"), (bodies.as_str(), "absolute")] {
@@ -60,7 +60,7 @@ fn the_driven_gear_gets_its_share_whichever_drives() {
 
 /// A rack of 2 kg on a pinion of 20 mm.
 #[test]
-fn a_rack_gets_its_share() {
+fn efficiency_holds_for_rack_and_pinion() {
     let parts = "
 bodies: { pinion: { inertia: 0.001, mass: 1 }, bar: { inertia: 1, mass: 2 } }
 joints:
@@ -80,7 +80,7 @@ joints:
 /// With the ring fixed, the sun gives the carrier (1 + ρ η)/(1 + ρ) of its power, since only rolling against the
 /// carrier has losses; and the carrier gives the sun (1 + ρ)/(1 + ρ/η) (Müller).
 #[test]
-fn planets_lose_what_rolls_against_the_carrier() {
+fn planets_lose_power_only_by_rolling_on_the_carrier() {
     let parts = "
 bodies: { sun: { inertia: 0.02, mass: 1 }, carrier: { inertia: 0.3, mass: 1 } }
 joints: { one: { revolute: [ground, sun] }, two: { revolute: [ground, carrier] }, mesh: { planetary: { sun: one, carrier: two, ratio: 3 } } }";

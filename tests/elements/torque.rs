@@ -3,7 +3,7 @@
 use crate::common::power::{APART, APART_IN_SPACE, assert_balance, pair, spatial_pair};
 
 #[test]
-fn it_turns_one_body_against_the_other() {
+fn torque_acts_between_two_bodies() {
     assert_balance(
         &pair("", "  e: { torque: { on: b, from: a, value: 4 } }", APART),
         "4*(b.angular_velocity - a.angular_velocity)",

@@ -41,7 +41,7 @@ initial: { a.orientation: { axis: x, angle: -90 deg } }",
 compared_with_adams!(ADAMS);
 
 #[test]
-fn a_spring_stores_and_a_damper_takes() {
+fn springs_store_and_dampers_dissipate_energy() {
     assert_balance(
         &pair(
             "",

@@ -25,7 +25,7 @@ simulation: {{ duration: 2, step: 1e-3, output_step: 0.1{more} }}
 /// SciPy 1.17: `CubicSpline(t, x, bc_type=((1, 0), (1, 0)))`, `BPoly.from_derivatives` of values and rates, and of
 /// values, rates and accelerations 0.
 #[test]
-fn polynomials_and_splines_are_those_of_scipy() {
+fn polynomials_and_splines_match_scipy() {
     let spline = [
         (0.3, [0.26455026, 2.91269841, 17.77777778]),
         (0.7, [0.85608466, -1.75396825, -9.20634921]),
@@ -87,7 +87,7 @@ fn trapezoids_have_their_ramps_and_the_motor_their_torque() {
 
 /// A mass is pushed by a force that comes and goes within a step: its speed is the area under the force.
 #[test]
-fn what_is_shorter_than_a_step_is_not_passed_over() {
+fn pulse_shorter_than_a_step_is_integrated() {
     let text = |simulation: &str| {
         format!(
             "
@@ -160,7 +160,7 @@ simulation: {{ duration: 1.9, step: 1e-3, output_step: 0.02 }}
 
 /// The guide's example: in the end the arm is at its target, but for the sag of the servo under the load.
 #[test]
-fn the_guides_example_runs() {
+fn example_of_the_guide_reaches_its_target() {
     let text = include_str!("../../docs/examples/trajectories.yaml");
     assert!(include_str!("../../docs/guides/trajectories.md").contains(text));
     let bounds = run(&read(text));

@@ -184,14 +184,14 @@ fn borrowed<'e>(examples: &'e [(&'static str, String)]) -> Vec<(&'static str, &'
 
 #[test]
 #[ignore = "2 s"]
-fn twins_of_every_effect_move_alike() {
+fn twins_of_every_effect_move_equally() {
     let [plane, space, mirrored] = twins(&OF_EFFECTS, &borrowed(&effects()), &REFUSED_EFFECTS);
     assert!(plane >= 28 && space >= 18 && mirrored >= 105, "{plane} {space} {mirrored}");
 }
 
 #[test]
 #[ignore = "4 s"]
-fn twins_of_every_joint_move_alike() {
+fn twins_of_every_joint_move_equally() {
     let [plane, space, mirrored] = twins(&OF_JOINTS, &borrowed(&joints()), &REFUSED_JOINTS);
     assert!(plane >= 12 && space >= 15 && mirrored >= 60, "{plane} {space} {mirrored}");
 }
@@ -211,7 +211,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 24, max_shrink_iters: 8, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn a_twin_anywhere_moves_alike(
+    fn twin_at_any_position_moves_equally(
         index in any::<prop::sample::Index>(),
         in_plane in any_twin(false),
         in_space in any_twin(true),

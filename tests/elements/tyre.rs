@@ -56,7 +56,7 @@ fn the_magic_formula_has_its_published_values() {
 
 /// Linear up to the largest force, with the steering angle on top.
 #[test]
-fn without_a_shape_it_is_linear_up_to_its_limit() {
+fn force_without_shape_is_linear_up_to_its_limit() {
     let bounds = characteristic("load: 4 kN, friction: 0.9, cornering_stiffness: 3e4, steer: 0.1", "planar");
     for (t, slip) in bounds.times.iter().zip(curve(&bounds, "slip")) {
         assert!((slip - (0.2 - 0.6 * t)).abs() < 1e-6);
@@ -86,7 +86,7 @@ simulation: {{ output_step: 0.1, {simulation} }}
 
 /// SciPy 1.17, `solve_ivp`, DOP853, rtol 1e-12: a slalom beyond the grip of the front tyres.
 #[test]
-fn a_slalom_is_that_of_scipy() {
+fn slalom_matches_scipy() {
     let wanted = [
         (0.5, [12.4816355, 0.272216401, 0.0952417688, 24.8393474, 1.68746827, 0.413237609]),
         (1.0, [24.6646758, 2.07796099, 0.336308001, 23.6990724, 5.62114391, 0.501712975]),
@@ -124,7 +124,7 @@ fn a_car_understeers() {
 
 /// In an image it steers the other way.
 #[test]
-fn an_image_moves_as_the_mirror_shows() {
+fn mirrored_instance_moves_symmetrically() {
     for axis in ["x", "y"] {
         let text = format!(
             "
@@ -154,7 +154,7 @@ simulation: {{ duration: 1, step: 1e-3, output_step: 0.1 }}
 /// D = a₁ F² + a₂ F, BCD = (a₃ F² + a₄ F)/exp(a₅ F), E = a₆ F² + a₇ F + a₈, in kN, N and per cent; a = −21.3, 1144,
 /// 49.6, 226, 0.069, −0.006, 0.056, 0.486, C = 1.65.
 #[test]
-fn along_the_heading_the_magic_formula_has_its_published_values() {
+fn longitudinal_magic_formula_matches_published_values() {
     let load = 4.0_f64;
     let peak = -21.3 * load * load + 1144.0 * load;
     let slope = (49.6 * load * load + 226.0 * load) / (0.069 * load).exp();
@@ -217,7 +217,7 @@ simulation: {{ duration: 2, step: 2e-4, output_step: 0.1 }}
 
 /// A locked wheel slows a car down by μ g; a braked one by T/R/(m + (1 + κ) J/R²), where it slips by κ = m v̇/C_x.
 #[test]
-fn a_car_is_braked_by_closed_forms() {
+fn braking_of_a_car_matches_closed_forms() {
     let locked = braked("fixed", "", "");
     let expected: Vec<f64> = locked.times.iter().map(|t| 20.0 - 0.8 * 9.81 * t).collect();
     assert!(distance(curve(&locked, "v"), &expected) < 1e-5);

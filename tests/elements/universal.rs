@@ -38,7 +38,7 @@ fn a_universal_joint_turns_unevenly() {
 }
 
 #[test]
-fn its_reactions_do_no_work() {
+fn reactions_do_no_work() {
     assert_balance(
         &spatial_pair(
             "  j: { universal: [a.P, b.P] }",

@@ -44,7 +44,7 @@ fn run(text: &str) -> Bounds {
 /// A right-handed worm that turns about x pushes the teeth next to it along −x. The wheel's axis is at y > 0, so it
 /// turns about −z.
 #[test]
-fn the_hand_decides_which_way_the_wheel_turns() {
+fn handedness_sets_the_sense_of_rotation() {
     let acceleration = 0.2 / (INERTIA[0] + RATIO * RATIO * INERTIA[1]);
     for (lead, sense) in [(LEAD, -1.0), (-LEAD, 1.0)] {
         let bounds = run(&text(lead, 0.0, [0.2, 0.0], "", "", ", formulation: joint"));
@@ -57,7 +57,7 @@ fn the_hand_decides_which_way_the_wheel_turns() {
 
 /// F_a2 = F_t1, F_t2 = F_a1 = 2 T₂/d₂, and the force apart that of the pressure angle (Norton, ch. 13).
 #[test]
-fn bearings_feel_the_forces_of_textbooks() {
+fn bearing_forces_match_textbooks() {
     let outputs = ", fx: shaft.force.x, fy: shaft.force.y, fz: shaft.force.z, gx: axle.force.x, gy: axle.force.y, gz: axle.force.z";
     let load = 5.0;
     for formulation in ["absolute", "joint"] {
@@ -96,7 +96,7 @@ fn with_friction(lead: f64, start: f64, torques: [f64; 2], transition: f64, rest
 /// tan ρ = μ/cos α. The worm that drives gives tan γ/tan(γ + ρ) of its power, and the wheel that drives tan(γ − ρ)/tan
 /// γ.
 #[test]
-fn a_worms_efficiency_is_that_of_its_thread() {
+fn efficiency_of_a_worm_is_that_of_its_thread() {
     let (lead, pressure) = (LEAD.to_radians(), PRESSURE.to_radians());
     let angle = (FRICTION / pressure.cos()).atan();
     let [driving, driven] = [lead.tan() / (lead + angle).tan(), (lead - angle).tan() / lead.tan()];
@@ -137,7 +137,7 @@ fn a_worm_of_little_lead_locks() {
 
 /// Models that can be read, but have no pitch point.
 #[test]
-fn axes_have_to_cross_apart() {
+fn intersecting_or_parallel_axes_are_refused() {
     let good = text(LEAD, 0.0, [0.2, 0.0], "", "", "");
     let axle = "between: [ground.side, wheel], axis: z";
     assert!(good.contains(axle));
