@@ -178,7 +178,7 @@ bounds: { scan: { points: 3 } }
 
 /// A pendulum on a ball joint swings in a plane: the reaction across it is rounding, which is no output that is lost.
 #[test]
-fn a_reaction_that_is_rounding_is_reliable() {
+fn reaction_of_rounding_errors_is_reliable() {
     let text = "
 bodies:
   ground: { points: { J: { position: [1, 2, 3], rotation: { axis: x, angle: -50 deg } } } }

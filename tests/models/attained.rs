@@ -102,7 +102,7 @@ fn end(row: usize, sign: f64) -> f64 {
 }
 
 #[test]
-fn no_end_that_corners_attain_is_missed_and_witnesses_replay() {
+fn ends_attained_at_corners_are_found_and_replayed() {
     let description = read(&model());
     let bounds = run(&description);
     let (output, band) = (&bounds.outputs[0], &bounds.outputs[0].bands[0]);

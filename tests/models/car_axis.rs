@@ -20,7 +20,7 @@ fn error(curves: [&[f64]; 4], row_of: impl Fn(f64) -> usize) -> f64 {
 }
 
 #[test]
-fn motion_is_the_references() {
+fn motion_converges_to_the_reference() {
     let steps = [1e-3, 5e-4, 2.5e-4];
     let runs = steps.map(|h| nominal(&car_axis().step(h)));
     let errors = runs.each_ref().map(|run| error(NAMES.map(|name| curve(run, name)), |t| row(run, t)));
@@ -36,7 +36,7 @@ fn motion_is_the_references() {
 }
 
 #[test]
-fn the_road_is_where_it_is_prescribed() {
+fn road_follows_its_prescribed_motion() {
     let bounds = nominal(&car_axis().observing(&["road.x - sqrt(1 - 0.01*sin(10*t)^2)", "road.y - 0.1*sin(10*t)"]));
     for output in &bounds.outputs {
         // Newton's tolerance.

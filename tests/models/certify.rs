@@ -48,7 +48,7 @@ fn overestimation(bounds: &Bounds, from: f64) -> Vec<f64> {
 }
 
 #[test]
-fn every_sample_of_the_pendulum_is_held() {
+fn bounds_contain_every_sample_of_the_pendulum() {
     let (bounds, failure) = certify(model("pendulum").duration(3.0).scan(101).observing(&["bob.x", "bob.y"]));
     assert_eq!(failure, None);
     // Measured 4.6e-5 and 6.9e-6.
@@ -59,7 +59,7 @@ fn every_sample_of_the_pendulum_is_held() {
 
 /// Accelerations and reactions of a row solve equations of their own.
 #[test]
-fn every_sample_of_a_reaction_is_held() {
+fn bounds_contain_every_sample_of_a_reaction() {
     let (bounds, failure) = certify(model("pendulum").duration(1.0).scan(51).observing(&["bob.ax", "bob.ay"]));
     assert_eq!(failure, None);
     for (found, name) in overestimation(&bounds, 0.2).into_iter().zip(["bob.ax", "bob.ay"]) {
@@ -69,7 +69,7 @@ fn every_sample_of_a_reaction_is_held() {
 
 #[test]
 #[ignore = "20 s: enclosures of a whole motion"]
-fn every_sample_of_the_slider_crank_is_held() {
+fn bounds_contain_every_sample_of_the_slider_crank() {
     let (bounds, failure) = certify(model("slider_crank_one").duration(0.4).scan(101));
     assert_eq!(failure, None);
     // Measured 4.8e-6 and 2.5e-6.
@@ -91,7 +91,7 @@ fn two_parameters() {
 
 #[test]
 #[ignore = "20 s: enclosures of a whole motion"]
-fn no_width_gives_the_nominal_motion() {
+fn interval_of_zero_width_gives_the_nominal_motion() {
     let description = model("slider_crank_one").uncertain("l1", 0.0).duration(0.5).scan(2);
     let (bounds, failure) = certify(description);
     assert_eq!(failure, None);
@@ -108,7 +108,7 @@ fn no_width_gives_the_nominal_motion() {
 
 #[test]
 #[ignore = "10 s: a box is halved again and again"]
-fn what_is_lost_is_unknown_and_said() {
+fn lost_rows_are_unknown_and_reported() {
     // A box in which cranks turn over and others do not: no polynomial follows.
     let (bounds, failure) =
         certify(model("pendulum").uncertain("length", 0.3).step(2e-3).duration(4.0).rows_every(0.5).scan(11));
@@ -124,7 +124,7 @@ fn what_is_lost_is_unknown_and_said() {
 }
 
 #[test]
-fn what_cannot_be_certified_is_refused() {
+fn unsupported_models_are_refused() {
     let refused = |description: &Subject| {
         of_scheme(description.clone()).asking(|study| study.methods(&[Method::Certified]).threads(1)).refused()
     };

@@ -325,7 +325,7 @@ simulation: { duration: 0.01, step: 1e-4, output_step: 1e-3 }
 
 #[test]
 #[ignore = "2 s"]
-fn where_it_ends_is_unknown_and_said() {
+fn rows_beyond_the_end_are_unknown_and_reported() {
     // A ball falls into a centre that attracts it with k/x: the equations end there, at √(π/2) s = 1.253 s for k = 1.
     let (bounds, failure) = certify(read(
         "
@@ -348,7 +348,7 @@ simulation: { duration: 1.4, step: 1e-3, output_step: 0.1 }
 
 /// The derivative of a jump is zero, and says nothing about the distance of two motions.
 #[test]
-fn jumps_with_the_motion_are_refused() {
+fn jumps_of_positions_or_velocities_are_refused() {
     let (_, failure) = certify(read(
         "
 parameters: { k: { value: 1, tolerance: 1% } }

@@ -49,7 +49,7 @@ fn the_pendulum_has_its_period() {
 
 /// Jacobi's elliptic functions, 40 digits.
 #[test]
-fn the_pendulum_swings_as_elliptic_functions_do() {
+fn pendulum_motion_matches_elliptic_functions() {
     let rows = reference("iftomm/pendulum.csv");
     let description = model("pendulum").observing(&["bob.x", "bob.y", "rod.force + 3*9.81*bob.y"]).rows_every(0.01);
     let runs = [1e-3, 5e-4].map(|h| nominal(&description.clone().step(h)));

@@ -25,7 +25,7 @@ fn against_scan(output: &OutputBounds) -> (f64, f64) {
 /// 1.0004 of the scan's mean width, and 0.7 % outside at the worst time.
 #[test]
 #[ignore = "20 s: ten seconds of motion"]
-fn ten_seconds_of_the_slider_crank_are_bounded_within_a_percent() {
+fn ten_seconds_of_the_slider_crank_are_bounded_to_a_percent() {
     let long = model("slider_crank_one").duration(10.0);
     let bounds = run(&composed(long, 5, 1001));
     let (width, outside) = against_scan(output(&bounds, "x3"));
@@ -67,7 +67,7 @@ fn scans_lie_within_composed_bounds_of_every_model() {
 
 /// With nothing uncertain but by name, the composed bounds are the nominal motion.
 #[test]
-fn zero_widths_give_the_nominal() {
+fn intervals_of_zero_width_give_the_nominal_motion() {
     let description = composed(model("slider_crank").uncertain("l1", 0.0).uncertain("tau", 0.0), 3, 2);
     let bounds = run(&description);
     let output = output(&bounds, "x3");

@@ -7,7 +7,7 @@ use crate::common::{band, curve, largest, model, nominal, output, run};
 /// Masses that the controller knows: e = (e₀ + (ė₀ + 10 e₀) t) exp(−10 t) about a path, whatever the arm does.
 #[test]
 #[ignore = "2 s"]
-fn a_known_arm_under_computed_torque_is_two_double_lags() {
+fn errors_of_a_known_arm_decay_as_double_lags() {
     let bounds = nominal(&model("computed_torque").tolerance(1e-9));
     for (name, start) in [("shoulder_error", -6.0_f64), ("elbow_error", 2.0)] {
         let start = start.to_radians();
@@ -37,7 +37,7 @@ fn at_rest(upper: f64, fore: f64) -> [f64; 2] {
 }
 
 #[test]
-fn unknown_masses_leave_an_error_that_the_weight_says() {
+fn unknown_masses_leave_the_error_of_their_weight() {
     let bounds = run(&model("computed_torque"));
     let mut wanted = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
     for i in 0..=40 {

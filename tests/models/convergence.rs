@@ -42,7 +42,7 @@ fn orders(description: &Subject, h: f64, after: f64) -> Vec<(String, f64)> {
 const AFTER_THE_START: f64 = 0.1;
 
 #[test]
-fn everything_converges_with_order_two() {
+fn all_quantities_converge_with_order_two() {
     let cases: [(&str, Subject, &[&str], f64); 6] = [
         (
             "slider crank",

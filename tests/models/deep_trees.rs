@@ -130,7 +130,7 @@ fn twisting_chain(links: usize) -> String {
 }
 
 #[test]
-fn link_by_link_and_as_a_whole_the_steps_are_the_same() {
+fn elimination_by_links_and_as_a_whole_give_equal_steps() {
     for description in [read(&chain(12, true)), read(&chain(16, false)), read(&twisting_chain(24)), branched()] {
         let simulators = both(&description);
         let [by_links, whole] = [&simulators[0], &simulators[1]].map(instructions);
@@ -173,7 +173,7 @@ fn a_branched_tree_moves_as_in_absolute_coordinates() {
 /// Against Pinocchio 4.1: its articulated-body algorithm at the start, and under DOP853 of SciPy (tolerances 1e-12)
 /// until 0.2 s.
 #[test]
-fn a_chain_of_twenty_moves_as_pinocchio_says() {
+fn chain_of_twenty_links_matches_pinocchio() {
     let places = [0, 7, 13, 19];
     let outputs: Vec<String> = places
         .iter()
@@ -204,7 +204,7 @@ fn a_chain_of_twenty_moves_as_pinocchio_says() {
 
 /// Steps under a tolerance, whose errors are estimated from inertial forces, against explicit ones.
 #[test]
-fn steps_of_a_chain_under_a_tolerance_end_where_explicit_ones_do() {
+fn tolerance_steps_of_a_chain_match_explicit_ones() {
     let description = read(&chain(14, true)).duration(0.2).rows_every(0.05);
     let by_hht = nominal(&description.clone().tolerance(1e-3).by_hht());
     let explicit = description.tolerance(1e-8).scheme(SchemeChoice::Explicit);

@@ -81,7 +81,7 @@ objective: { least: e }
 }
 
 #[test]
-fn several_optima_are_told_the_best_first() {
+fn several_optima_are_listed_best_first() {
     let found = designed(
         "parameters: { a: 0.5 ± 0.1 }
 outputs: { e: (a^2 - 1)^2 + 0.2*a }
@@ -172,7 +172,7 @@ objective: { least: size }
 }
 
 #[test]
-fn the_nearest_point_where_none_is_feasible() {
+fn nearest_point_is_given_if_none_is_feasible() {
     let found = designed(
         "parameters: { a: 1 m ± 0.1 m, b: 1 m ± 0.1 m }
 outputs: { f: a*b, e: a + b }
@@ -188,7 +188,7 @@ objective: { least: e }
 }
 
 #[test]
-fn margins_are_balanced_and_their_cost_is_told() {
+fn margins_are_balanced_and_their_cost_is_stated() {
     let found = designed(
         "parameters:
   a: { value: 3 m, tolerance: 0.2 m, cost: { reciprocal: 4 } }
@@ -222,12 +222,12 @@ fn gains(name: &str) {
 
 #[test]
 #[ignore = "2 s"]
-fn the_toe_of_a_double_wishbone_gains() {
+fn design_improves_the_toe_of_a_double_wishbone() {
     gains("double_wishbone");
 }
 
 #[test]
 #[ignore = "slow: 40 s on two busy cores"]
-fn the_dose_of_a_ventilator_gains() {
+fn design_improves_the_dose_of_a_ventilator() {
     gains("four_bar_ventilator");
 }

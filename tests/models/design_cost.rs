@@ -24,7 +24,7 @@ objective: cost
 ";
 
 #[test]
-fn a_stack_costs_what_lagrange_says() {
+fn cost_of_a_stack_matches_lagrange() {
     let found = designed(STACK);
     // In the middle of the limits 0.3 mm are left: multiples of 0.1 mm as √1 : √4 : √9, with the sum 3, cost 36/3.
     let best = found.best().unwrap();
@@ -61,7 +61,7 @@ fn the_margin_has_the_same_front() {
 }
 
 #[test]
-fn nominal_values_that_make_tolerances_cheaper() {
+fn nominal_values_minimise_the_cost_of_tolerances() {
     let found = designed(
         "
 parameters:
@@ -84,7 +84,7 @@ objective: cost
 }
 
 #[test]
-fn a_lever_turns_to_where_its_angle_may_be_coarse() {
+fn lever_is_set_to_its_least_sensitive_angle() {
     let found = designed(
         "
 analysis: kinematics
@@ -118,7 +118,7 @@ simulation: { duration: 0.1, output_step: 0.1 }
 }
 
 #[test]
-fn grades_are_those_of_all_combinations() {
+fn grades_match_a_search_of_all_combinations() {
     let grades = "grades: { 0.05 mm: 9, 0.1 mm: 4, 0.2 mm: 3, 0.3 mm: 1 }";
     let found = designed(&STACK.replace("cost: { reciprocal: 4 }", &format!("cost: {{ {grades} }}")));
     // The rest of 0.3 mm after a grade is shared as √1 : √9.
@@ -145,7 +145,7 @@ fn a_share_of_the_production_costs_less_than_every_case() {
 }
 
 #[test]
-fn the_nearest_point_where_no_tolerances_will_do() {
+fn nearest_point_is_given_if_no_tolerances_suffice() {
     let found = designed(&STACK.replace("9 to 11 mm", "10.2 to 11 mm"));
     let best = found.best().unwrap();
     assert!(!best.is_feasible && found.front.is_empty(), "{best:?}");

@@ -43,7 +43,7 @@ fn peaucelliers_pen_draws_a_straight_line() {
 }
 
 #[test]
-fn peaucelliers_line_bends_as_inversion_says() {
+fn bounds_of_peaucelliers_line_match_inversion() {
     let bounds = run(&model("peaucellier").scan(3));
     for (name, index) in [("pen_x", 0), ("pen_y", 1)] {
         let output = output(&bounds, name);
@@ -75,7 +75,7 @@ fn toe(t: f64) -> Point {
 }
 
 #[test]
-fn jansens_toe_is_where_circles_meet() {
+fn jansens_toe_matches_intersections_of_circles() {
     let bounds = nominal(&model("jansen"));
     for (name, index) in [("toe_x", 0), ("toe_y", 1)] {
         let error = distance_from(&bounds.times, curve(&bounds, name), |t| toe(t)[index]);

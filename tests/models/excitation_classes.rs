@@ -62,7 +62,7 @@ fn an_energy_is_spent_along_the_kernel() {
 }
 
 #[test]
-fn the_worst_of_a_band_is_one_of_its_sines() {
+fn worst_function_of_a_band_is_a_sine() {
     let sizes = |from: f64, to: f64| {
         let h = kernel();
         let size = |frequency: f64| {

@@ -50,7 +50,7 @@ pub fn integral(half_periods: usize) -> f64 {
 
 /// A share of a negative middle is one of its size.
 #[test]
-fn limits_about_a_negative_middle_are_those_of_both_ends() {
+fn percentage_of_a_negative_middle_gives_both_ends() {
     let [share, ends] =
         ["-20 N ± 10%", "[-22 N, -18 N]"].map(|within| run(&oscillator(&format!("{{ within: {within} }}"), "")).1);
     let [share, ends] = [&share, &ends].map(|bounds| &bounds.outputs[0].bands[0]);
@@ -62,7 +62,7 @@ fn limits_about_a_negative_middle_are_those_of_both_ends() {
 }
 
 #[test]
-fn a_bounded_force_moves_an_oscillator_by_the_integral_of_its_kernel() {
+fn ends_of_an_oscillator_match_the_integral_of_its_kernel() {
     let (_, bounds, summary) = run(&oscillator("{ within: ± 3 N }", ""));
     let band = &bounds.outputs[0].bands[0];
     for row in 1..=PERIODS {
@@ -107,7 +107,7 @@ bounds: {{ chebyshev: {{ order: 2 }} }}
 /// Road of a limited slope under the shipped quarter car, 0.1 ∫|h| over six seconds by another program
 /// (the classical Runge and Kutta method over 60 000 steps): 2.573452 m/s².
 #[test]
-fn a_road_of_limited_slope_shakes_a_quarter_car_by_a_known_number() {
+fn quarter_car_on_roads_of_limited_slope_has_known_ends() {
     let (_, bounds, _) = run(&quarter_car("step: 2.5e-4"));
     let (end, error) = last_end(&bounds, 0);
     assert!((end - 2.573_452).abs() < 1e-4 && error < 3e-4, "{end} ± {error}");
@@ -123,7 +123,7 @@ fn farthest_functions_switch_between_the_ends_of_steps() {
 }
 
 #[test]
-fn classes_within_one_another_have_ends_within_one_another() {
+fn nested_classes_have_nested_ends() {
     let end = |excitation: &str| last_end(&run(&oscillator(excitation, "")).1, 0);
     let [(free, _), (fast, _), (slow, _), (held, error)] = [
         "{ within: ± 3 N }",
@@ -169,7 +169,7 @@ fn parameters_are_worst_within_their_intervals_too() {
 
 /// Reductions of a motion from rest: the peak is the farthest end of all rows, the sum that of the kernel's integral.
 #[test]
-fn reduced_outputs_and_requirements_are_of_functions() {
+fn reduced_outputs_are_bounded_over_functions() {
     let further = "requirements:
   within: peak <= 0.2 m
   beyond: peak <= 0.05 m
@@ -213,7 +213,7 @@ fn reduced_outputs_and_requirements_are_of_functions() {
 
 /// x = (push + pull + k)/…: each moves an oscillator from rest by its own ∫|h|, a constant by |∫h|.
 #[test]
-fn functions_have_shares_beside_parameters() {
+fn functions_and_parameters_have_contributions() {
     let further = "parameters: { k: 0 N ± 1 N }";
     let text = oscillator("{ within: ± 1 N }, pull: { within: ± 0.5 N }", further)
         .replace("value: [push, 0]", "value: [push + pull + k, 0]");
@@ -260,7 +260,7 @@ fn uncertain_parameters_and_functions_are_bounded_together() {
 }
 
 #[test]
-fn requirements_are_of_functions() {
+fn requirements_are_decided_over_functions() {
     let verdict = |limit: f64| {
         let further = format!("requirements: {{ stays: x <= {limit} }}");
         run(&oscillator("{ within: ± 3 N }", &further)).2.requirements[0].verdict
@@ -310,7 +310,7 @@ fn at(witness: &FunctionWitness, time: f64) -> f64 {
 }
 
 #[test]
-fn the_worst_function_of_a_pendulum_is_worse_than_random_ones() {
+fn worst_function_of_a_pendulum_exceeds_random_ones() {
     let (model, bounds, _) = run(PENDULUM);
     let band = &bounds.outputs[0].bands[0];
     let row = bounds.times.len() - 1;

@@ -155,6 +155,6 @@ fn asked(roads: u64) -> u64 {
 
 #[test]
 #[ignore = "ten seconds"]
-fn the_worst_roads_of_half_a_car_are_worse_than_random_ones() {
+fn worst_roads_of_a_half_car_exceed_random_ones() {
     compare(asked(2000));
 }

@@ -37,7 +37,7 @@ fn the_slider_crank_is_within_its_tolerance() {
 /// The pendulum in Cartesian coordinates: positions by Jacobi's elliptic functions, the tension by energy. Rows lie
 /// between steps.
 #[test]
-fn dense_rows_reactions_and_constraints_are_those_of_the_pendulum() {
+fn dense_rows_match_the_motion_of_the_pendulum() {
     let rows = reference("iftomm/pendulum.csv");
     let description = model("pendulum").observing(&["bob.x", "bob.y", "rod.force + 3*9.81*bob.y"]).rows_every(0.01);
     let (bounds, summary) = run_methods(&description.tolerance(1e-8), Some(Vec::new()));
@@ -54,7 +54,7 @@ fn dense_rows_reactions_and_constraints_are_those_of_the_pendulum() {
 
 /// Over a box: a free oscillator, x₀ cos(√(k/m) t), by every method; jets are those of the motion.
 #[test]
-fn bounds_by_every_method_are_those_of_the_oscillator() {
+fn bounds_by_every_method_match_the_oscillator() {
     let text = "
 parameters: { k: { value: 30, unit: N/m, tolerance: 3% } }
 bodies: { block: { mass: 1.5, coordinates: [x] } }
@@ -86,7 +86,7 @@ bounds: { chebyshev: { order: 10 }, taylor: { order: 12 }, scan: { points: 41 } 
 }
 
 #[test]
-fn a_tolerance_of_the_bounds_takes_it() {
+fn tolerance_of_the_bounds_selects_the_explicit_method() {
     let description = model("slider_crank_one").asking(|study| study.tolerance(1e-4));
     let description = description.chebyshev(8, RangeKind::Tight).duration(1.5);
     let (bounds, summary) = run_methods(&description, None);
@@ -102,7 +102,7 @@ fn a_tolerance_of_the_bounds_takes_it() {
 
 /// A stiff bushing: stability limits the explicit steps, which is reported, and `auto` takes HHT-I3.
 #[test]
-fn what_is_stiff_is_left_to_the_scheme() {
+fn stiff_models_are_integrated_by_the_scheme() {
     let text = "
 bodies: { block: { mass: 1, coordinates: [x] }, tip: { mass: 0.001, coordinates: [x] } }
 effects:
@@ -148,7 +148,7 @@ fn jets_follow_the_explicit_method() {
 
 /// `explain` names the method under a tolerance, and why it is not taken.
 #[test]
-fn explain_says_by_what_a_model_is_integrated() {
+fn explain_names_the_integrator_of_a_model() {
     let decisions = |bounds: &str, simulation: &str| -> Vec<String> {
         let text = include_str!("../../models/slider_crank_one.yaml")
             .replace("\nbounds:\n", &format!("\nbounds:\n{bounds}"))

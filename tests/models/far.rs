@@ -48,7 +48,7 @@ fn instructions(simulator: &Simulator, active: bool) -> usize {
 /// Bare, and then a few instructions for each contact: its gap and the greatest of the gaps, when the matrix is
 /// factorised and in each iteration.
 #[test]
-fn a_far_contact_is_its_gap() {
+fn distant_contact_costs_only_its_gap() {
     let bare = prepare(slider_crank("", "").study().description()).unwrap();
     assert_eq!(instructions(&bare, true), instructions(&bare, false));
     let mut before = instructions(&bare, true);
@@ -64,7 +64,7 @@ fn a_far_contact_is_its_gap() {
 
 /// Numbers of samples, jets of parameters and closures alike: far contacts change nothing but the last digits.
 #[test]
-fn far_contacts_leave_every_method_as_it_was() {
+fn distant_contacts_leave_every_method_unchanged() {
     let [bare, far] = [0, 3].map(|count| run(&floors(count).duration(0.3)));
     assert!(bare.outputs[0].bands.len() >= 3);
     for (a, b) in bare.outputs[0].bands.iter().zip(&far.outputs[0].bands) {
@@ -123,7 +123,7 @@ fn agrees_with_samples_alone(description: &Subject, width: usize, steps: usize) 
 
 #[test]
 #[ignore = "10 s: every lane alone"]
-fn lanes_do_not_depend_on_who_touches() {
+fn results_of_a_sample_do_not_depend_on_other_contacts() {
     // A slider that runs into a buffer, deeper the longer the crank is; one crank is too short.
     let buffer = "  buffer: { contact: { between: [ground.W, slider], plane: [-1, 0], impact: { stiffness: 1e4, dissipation: 0.1 }, \
                   friction: { coefficient: 0.2 } } }\n";

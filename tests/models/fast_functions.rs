@@ -54,7 +54,7 @@ fn a_burst_is_resolved() {
 /// A condition and its negative change at the same time, whatever the parameters are: that is one jump. Here the signs'
 /// sum is 10 to the jump, and −10 then.
 #[test]
-fn jumps_that_coincide_are_one() {
+fn coinciding_jumps_are_one_jump() {
     let text = pushed("5*sign(sin(2*t) + 1e-3 - 1e-3) - 5*sign(-sin(2*t))", 2.0);
     let bounds = nominal(&read(&text));
     let (jump, force) = (0.5 * std::f64::consts::PI, 10.0 / 48.0);
@@ -74,7 +74,7 @@ fn jumps_that_coincide_are_one() {
 
 /// Two square waves whose jumps coincide for some phases: no step separates these, however short.
 #[test]
-fn jumps_that_may_coincide_are_no_reason_for_ever_shorter_steps() {
+fn possibly_coinciding_jumps_do_not_shorten_steps() {
     let text = pushed("9*sign(sin(20*t + p)) + 9*sign(sin(20*t + 1.01*p))", 2.0);
     let bounds = nominal(&read(&text));
     // Each half period has a constant force: amplitudes about its equilibrium.
@@ -94,7 +94,7 @@ fn jumps_that_may_coincide_are_no_reason_for_ever_shorter_steps() {
 }
 
 #[test]
-fn a_search_for_steps_ends_when_it_is_asked_to() {
+fn interruption_ends_a_search_for_steps() {
     let asked = AtomicUsize::new(0);
     let interrupted = || asked.fetch_add(1, Ordering::Relaxed) > 20;
     // Some hundred thousand steps, which take seconds.

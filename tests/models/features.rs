@@ -59,7 +59,7 @@ fn least(stepping: &str) -> usize {
 }
 
 #[test]
-fn a_bell_in_a_place_is_found() {
+fn bell_shaped_force_at_a_position_is_found() {
     for width in [1e-3, 1e-4, 1e-5_f64] {
         let (force, work) = (2.0 / width, 2.0 * PI.sqrt());
         let brake = format!("-{force:?}*exp(-((sledge.x - 0.83)/{width:?})^2)");
@@ -127,7 +127,7 @@ bounds: {{ chebyshev: {{ order: 5 }} }}
 
 /// Galilean invariance: the interaction of two bodies is seen, or missed, whatever speed they have in common.
 #[test]
-fn a_common_velocity_hides_nothing_and_flags_nothing() {
+fn common_velocity_changes_no_band_and_no_flag() {
     let band = |speed: f64| {
         let text = convoy(speed, 0.4);
         let result = Model::from_yaml_str("convoy", &text).unwrap().study().run().unwrap();
@@ -147,7 +147,7 @@ fn a_common_velocity_hides_nothing_and_flags_nothing() {
 
 /// The speeds reach the brake after 0.25 s to 0.29 s.
 #[test]
-fn the_summary_says_from_when_on_fixed_steps_pass_over_a_force() {
+fn summary_states_when_fixed_steps_miss_a_force() {
     let passed = |stepping: &str| {
         let text = thrown("", "-2e4*exp(-((sledge.x - 0.83)/1e-4)^2)", stepping);
         let result = Model::from_yaml_str("thrown", &text).unwrap().study().run().unwrap();

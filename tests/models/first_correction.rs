@@ -9,7 +9,7 @@ use crate::common::{load, model_files};
 /// Over the first steps of every model, at w and λ off by 0.1 of their sizes: conditional effects are active in some
 /// and not in others.
 #[test]
-fn a_first_correction_is_a_correction() {
+fn first_correction_equals_the_general_correction() {
     let mut shorter = 0;
     for file in model_files() {
         let Ok(simulator) = study::prepare(load(&file).study().description()) else { continue };

@@ -59,7 +59,7 @@ fn area(polygon: &[[f64; 2]]) -> f64 {
 }
 
 #[test]
-fn the_set_of_a_line_is_the_polygon_of_its_rows() {
+fn consistent_set_of_a_line_is_a_polygon() {
     let rows = line(&mut Random(41));
     let found = fitted(&rows);
     let mut polygon = vec![[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
@@ -86,7 +86,7 @@ fn the_set_of_a_line_is_the_polygon_of_its_rows() {
 }
 
 #[test]
-fn least_squares_of_a_line_are_those_of_the_normal_equations() {
+fn least_squares_of_a_line_match_normal_equations() {
     let rows = line(&mut Random(42));
     let found = fitted(&rows);
     let n = rows.len() as f64;

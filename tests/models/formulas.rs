@@ -101,7 +101,7 @@ fn a_periodic_table_drives_for_ever() {
 
 /// Units in formulas of parameters: the same values as without.
 #[test]
-fn units_stand_in_formulas() {
+fn formulas_may_contain_units() {
     let value = |formula: &str| {
         // A mass called `m` would make `N*m` ambiguous.
         let text = pushed("F").replace("m: 2 kg", "M: 2 kg").replace("mass: m", "mass: M");
@@ -131,7 +131,7 @@ fn units_stand_in_formulas() {
 
 /// The names of outputs stand for their formulas, unless the model has something of that name.
 #[test]
-fn outputs_name_the_outputs_above_them() {
+fn outputs_may_refer_to_earlier_outputs() {
     let text = pushed("F");
     let outputs = |outputs: &str| text.replace("outputs: { x: b.x, v: b.vx, f: \"F\" }", outputs);
     let named = "outputs: { v: b.vx, d: 2*b.x, power: F*v, twice: 2*power + F*v, shifted: b.x + d }";

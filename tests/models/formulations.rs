@@ -155,18 +155,18 @@ fn agree(description: &Subject, h: f64, later: f64) {
 }
 
 #[test]
-fn a_tree_of_every_joint_moves_alike() {
+fn formulations_agree_on_a_tree_of_every_joint() {
     agree(&read(&tree(false)), 1e-3, 1e-5);
 }
 
 #[test]
-fn a_floating_tree_moves_alike() {
+fn formulations_agree_on_a_floating_tree() {
     agree(&read(&tree(true)), 1e-3, 1e-5);
 }
 
 #[test]
 #[ignore = "10 s"]
-fn every_model_that_has_both_moves_alike() {
+fn formulations_agree_on_every_model_with_both() {
     let models: Vec<Subject> = model_files().iter().map(|path| load(path)).filter(has_both).collect();
     let names: Vec<&str> = models.iter().map(|model| model.name()).collect();
     println!("{names:?}");
@@ -210,7 +210,7 @@ fn instructions(description: &Subject) -> (bool, usize) {
 
 #[test]
 #[ignore = "10 s: chains of up to a hundred links"]
-fn absolute_coordinates_cost_in_proportion_to_the_links_and_short_chains_take_joint_ones() {
+fn instructions_grow_linearly_in_absolute_coordinates() {
     for spatial in [false, true] {
         let [(_, short), (_, long)] = [20, 100].map(|links| instructions(&chain(links, spatial, "absolute")));
         println!("spatial {spatial}: {short} instructions for 20 links, {long} for 100");
@@ -225,7 +225,7 @@ fn absolute_coordinates_cost_in_proportion_to_the_links_and_short_chains_take_jo
 }
 
 #[test]
-fn an_open_start_of_a_long_chain_takes_instructions_in_proportion_to_its_links() {
+fn open_start_of_a_chain_costs_linear_instructions() {
     // The first angle is given, and the others are nearest to zero: the distances couple each link with the next.
     let corrections = [60, 120].map(|links| {
         let mut bodies = String::new();
@@ -247,7 +247,7 @@ simulation: {{ duration: 0.01, step: 1e-3, output_step: 1e-3, formulation: absol
 
 /// A compilation beyond its limit is given up; one within its limit gives the usual program.
 #[test]
-fn a_program_is_given_up_beyond_its_limit_and_not_before() {
+fn program_is_abandoned_only_beyond_its_limit() {
     let system =
         assemble::in_absolute_coordinates(&assemble::Questions::of(read(&tree(false)).study().description())).unwrap();
     let within = |limit| Simulator::within(system.clone(), Scheme::Hht { alpha: -0.1 }, 1e-3, limit);
@@ -263,7 +263,7 @@ fn a_program_is_given_up_beyond_its_limit_and_not_before() {
 /// Values of the start that the model leaves open are nearest to rest in joint coordinates: neither the formulation nor
 /// the outputs change them.
 #[test]
-fn the_start_depends_neither_on_the_formulation_nor_on_what_is_observed() {
+fn start_is_independent_of_formulation_and_outputs() {
     let planar = "
 bodies:
   rod: { mass: 1.4, inertia: 0.15, points: { a: [0.25, 0.05], c: [-0.3, 0] } }

@@ -39,7 +39,7 @@ fn are_those_of(text: &str, parameters: &[f64], of: impl Fn(&[f64], f64) -> [f64
 
 /// Below a border that rises, a constant push acts: the force jumps, so that instants matter to first order.
 #[test]
-fn through_jumps_of_a_force() {
+fn gradients_through_force_jumps_are_exact() {
     let text = "
 parameters:
   h: { value: 1 m, tolerance: 2% }
@@ -80,7 +80,7 @@ simulation: { duration: 2, step: 1e-3, output_step: 0.05 }
 
 /// On an elastic floor, m y″ = −k y − m g while y < 0: flights and half waves in turn.
 #[test]
-fn through_contacts() {
+fn gradients_through_contacts_are_exact() {
     let text = "
 parameters:
   h: { value: 1 m, tolerance: 2% }
@@ -115,7 +115,7 @@ simulation: { duration: 2.5, step: 1e-4, output_step: 0.05 }
 /// A motion with states that change at instants is not followed from event to event: its derivatives depend on the
 /// steps behind the first contact, and that is reported.
 #[test]
-fn what_cannot_be_followed_is_reported() {
+fn motions_without_event_following_are_reported() {
     let text = |floor: f64| {
         format!(
             "

@@ -35,7 +35,7 @@ fn under(g: f64, height: f64, speed: f64, stiffness: f64, t: f64) -> [f64; 2] {
 /// ceiling; a faster one ends it at once. Polynomials through the faster ones leave the slow ones out by
 /// πg/ω = 1.4 mm/s.
 #[test]
-fn slow_contacts_are_told_apart() {
+fn slow_grazing_contacts_are_distinguished() {
     let (height, stiffness): (f64, f64) = (0.01826, 4.503e8);
     let text = throw(
         ["9.81", "0.01826", "{ interval: [0.4714, 0.6686] }", "4.503e8"],
@@ -67,7 +67,7 @@ fn slow_contacts_are_told_apart() {
 /// The height is largest within a contact of 16 ms, which a layer of the box behind the grazed surface meets at this
 /// time: no edge of a lattice of the box ends within the layer.
 #[test]
-fn layers_are_searched_that_are_thinner_than_the_lattice() {
+fn layers_thinner_than_the_lattice_are_searched() {
     let text = throw(
         ["{ interval: [9.691, 9.929] }", "214.8", "{ interval: [60.57, 71.23] }", "41083.52"],
         9.9,

@@ -42,7 +42,7 @@ fn a_bump_in_two_parameters_is_covered() {
 /// A start that is largest on a ring, which the budget is too small to follow: the last refinement is challenged, too.
 /// The parameters act by themselves as well, on a velocity of nanometres a second, so that no number stands for them.
 #[test]
-fn a_ring_that_the_budget_does_not_resolve_is_flagged_or_covered() {
+fn unresolved_ring_is_flagged_or_covered() {
     let bounds = run(&read(
         "
 parameters: { p: { interval: [-1.582, 2.138] }, q: { interval: [0.257, 1.389] } }
@@ -111,7 +111,7 @@ fn parameters_that_act_through_one_number_are_resolved() {
 /// x = cos(√(k/m) t), of which a formula jumps: no sample makes the search for its ends better, and none is spent on
 /// that.
 #[test]
-fn a_formula_that_jumps_is_not_refined_without_end() {
+fn refinement_of_a_jumping_formula_is_limited() {
     let description = read(
         "
 parameters: { k: { interval: [95, 105] }, m: { interval: [0.95, 1.05] } }
@@ -199,7 +199,7 @@ fn sums_of_many_oscillators_are_covered() {
 
 /// A bump between the nodes of a given order, which only the scan meets.
 #[test]
-fn what_only_another_method_has_simulated_is_within_the_band() {
+fn bands_contain_samples_of_other_methods() {
     let settings = "simulation: { duration: 5, step: 0.01, output_step: 0.25 }
 bounds: { chebyshev: { order: 4 }, scan: { points: 25 } }";
     let bounds = softened(1, "1 + 0.5*exp(-((p0 + 0.42)/0.05)^2)", settings);
@@ -242,7 +242,7 @@ bounds: { chebyshev: { order: 3 }, scan: { points: 4 } }
 /// A light mass on a stiff spring, at rest by the nominal start and shaken at the box's ends, is too fast for the
 /// steps. Outputs that hardly feel it are resolved all the same.
 #[test]
-fn a_fast_mode_spoils_no_other_output() {
+fn fast_mode_flags_only_its_own_output() {
     let bounds = run(&read(
         "
 parameters: { k: { value: 100 N/m, tolerance: 10 % }, off: { value: 0 mm, tolerance: 0.1 mm } }

@@ -241,7 +241,7 @@ fn kinks_of_expanded_outputs_are_covered() {
 
 /// Constant and zero outputs, with and without uncertain parameters.
 #[test]
-fn what_is_constant_is_resolved() {
+fn constant_outputs_are_resolved() {
     let parts = [(0.1, 1.0, 5.0)];
     let settings = "simulation: { duration: 5, step: 0.01, output_step: 0.1 }\nbounds: { chebyshev: { order: 4 }, scan: { points: 5 } }\n";
     let outputs = "{ one: b0.x/b0.x, zero: b0.x - b0.x, far: 1e6 + 1e-9*b0.x, still: b1.x, rate: b1.vx, a: b1.ax }";

@@ -49,7 +49,7 @@ fn joints_stay_closed() {
 }
 
 #[test]
-fn velocities_leave_the_joints_by_the_square_of_the_step() {
+fn velocity_constraint_errors_are_of_second_order() {
     // Only positions are constrained; the velocities of HHT satisfy Φ_q v + Φ_t = 0 to second order.
     let mut findings = Findings::default();
     for (name, _, rates) in GAPS {
@@ -91,7 +91,7 @@ fn conservative_models_keep_their_energy() {
 }
 
 #[test]
-fn what_the_motor_gives_is_stored_or_lost() {
+fn motor_work_equals_stored_and_dissipated_energy() {
     // The slider crank: energy = −work of the damper + work of the torque. The damper's work is integrated by Simpson's
     // rule.
     let formulas = ["energy", "tau*crank.angle", "-c*slider.vx^2"];

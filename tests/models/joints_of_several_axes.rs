@@ -108,7 +108,7 @@ fn apart(description: &Subject) -> f64 {
 
 #[test]
 #[ignore = "2 s"]
-fn motions_and_reactions_are_those_of_absolute_coordinates() {
+fn motions_and_reactions_match_absolute_coordinates() {
     for (first, second, initial, name) in ROWS {
         let description = row_of_three(first, second, initial);
         let in_joints = explained(&within(description.clone(), Formulation::Joint));
@@ -346,7 +346,7 @@ simulation: { duration: 2, step: 1e-3, output_step: 0.1 }
 
 /// The loop of a spatial four-bar linkage is cut where its steps are shortest, whatever the order of its joints.
 #[test]
-fn a_coupler_hangs_on_one_of_its_joints() {
+fn loop_of_a_coupler_is_cut_at_one_joint() {
     let explained = explained(&crate::common::model("spatial_four_bar"));
     assert_eq!(explained.coordinates, ["A.angle", "D.angle", "C.angle_1", "C.angle_2"]);
     let cut = explained.formulation.split_once("; loops are cut at ").unwrap().1;

@@ -22,7 +22,7 @@ simulation: {{ duration: 2, tolerance: 1e-6, output_step: 0.01 }}
 }
 
 #[test]
-fn no_energy_is_lost_where_a_force_jumps() {
+fn force_jumps_lose_no_energy() {
     let (bounds, summary) = ran(study_of(&track("1", "")));
     assert!(summary.integration.is_some_and(|name| name.contains("between events")));
     let lost = largest(output(&bounds, "lost").nominal.iter().copied());
@@ -31,7 +31,7 @@ fn no_energy_is_lost_where_a_force_jumps() {
 
 /// Constant forces are integrated exactly: steps err by rounding alone, also in rows next to the events.
 #[test]
-fn errors_of_steps_are_rounding_where_a_force_jumps() {
+fn step_errors_at_force_jumps_are_rounding() {
     let (bounds, summary) = ran(study_of(&track("1 ± 5%", "bounds: { chebyshev: { order: 6 } }")));
     assert!(summary.integration.is_some_and(|name| name.contains("between events")));
     for own in &bounds.outputs {

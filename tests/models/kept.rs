@@ -69,7 +69,7 @@ fn agrees(text: &str, tolerance: f64) {
 }
 
 #[test]
-fn values_anywhere_are_those_of_simulations_within_the_stated_error() {
+fn surrogate_values_match_simulations_within_errors() {
     // Coordinates expanded, to an order and to a tolerance, and outputs expanded.
     agrees(&format!("{TWO}bounds: {{ chebyshev: {{ order: 3 }} }}"), 0.0);
     agrees(&format!("{TWO}bounds: {{ tolerance: 1e-4 }}"), 1e-4);

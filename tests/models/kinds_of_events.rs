@@ -97,7 +97,7 @@ bounds: {{ chebyshev: {{ order: 4 }} }}
 
 /// Two stops at one position are one of the summed stiffness: their events coincide in all samples.
 #[test]
-fn redundant_stops_are_one() {
+fn coinciding_stops_act_as_one() {
     let one = ELASTIC.replace("  ground:", "  unused: { force: { on: ball, value: [0, 0] } }\n  ground:");
     let two = ELASTIC
         .replace("  ground:", "  again: { force: { on: ball, value: [0, \"K/4*max(-ball.y, 0)\"] } }\n  ground:");
@@ -118,7 +118,7 @@ fn redundant_stops_are_one() {
 /// A floor of two conditions that are met at once, and are no multiples of each other: which of them the cubics through
 /// the ends of a step find first differs from sample to sample.
 #[test]
-fn conditions_that_are_met_at_once_are_one_event() {
+fn simultaneous_conditions_are_one_event() {
     let two = "\"if((ball.y + 1)^3 < 1, -K*ball.y/2, 0) + K/2*max(-ball.y, 0)\"";
     let (bounds, summary) = run_methods(&read(&ELASTIC.replace("\"K*max(-ball.y, 0)\"", two)), None);
     assert!(integrated(&summary, "chebyshev").0);

@@ -17,7 +17,7 @@ fn slider(r: f64, l: f64, omega: f64, time: f64) -> [f64; 3] {
 }
 
 #[test]
-fn a_slider_crank_moves_as_trigonometry_says_and_so_do_its_bounds() {
+fn motion_and_bounds_of_a_slider_crank_match_trigonometry() {
     let bounds = run(&example("kinematics.yaml"));
     for (row, &time) in bounds.times.iter().enumerate() {
         let wanted = slider(0.1, 0.3, 10.0, time);
@@ -49,7 +49,7 @@ fn rows_far_apart_stay_on_their_branch() {
 }
 
 #[test]
-fn what_motors_leave_free_is_named() {
+fn coordinates_not_driven_by_motors_are_named() {
     let text = "
 analysis: kinematics
 bodies: { rod: { points: { O: [-0.5, 0] } } }
@@ -63,7 +63,7 @@ simulation: { duration: 1 }
 }
 
 #[test]
-fn a_mechanism_that_locks_says_when() {
+fn locking_is_reported_with_its_time() {
     // The rod is shorter than the crank: it is taut where r sin θ = l.
     let text = include_str!("../../docs/examples/kinematics.yaml").replace("value: 0.3,", "value: 0.08,");
     let (bounds, summary) = ran(study_of(&text).nominal());
@@ -74,7 +74,7 @@ fn a_mechanism_that_locks_says_when() {
 }
 
 #[test]
-fn what_is_one_number_a_motion_is_bounded_between_coarse_rows() {
+fn reduced_outputs_are_bounded_between_coarse_rows() {
     // A row every 0.2 rad: the greatest speed lies between rows.
     let text = include_str!("../../docs/examples/kinematics.yaml").replace("output_step: 0.01", "output_step: 0.02");
     let text = text.replace(
@@ -134,7 +134,7 @@ simulation: {{ duration: 1.5, output_step: 0.05 }}
 }
 
 #[test]
-fn two_branches_near_one_another_are_not_mixed_up() {
+fn neighbouring_branches_are_not_confused() {
     for rod in [0.100_02, 0.101, 0.1001] {
         let bounds = nominal(&read(&near_a_change_point(&format!("value: {rod}"), "")));
         assert_eq!(bounds.times.len(), 31);
@@ -145,7 +145,7 @@ fn two_branches_near_one_another_are_not_mixed_up() {
 }
 
 #[test]
-fn samples_that_lock_do_not_go_on_beyond_the_gap_on_another_branch() {
+fn locked_samples_do_not_continue_on_another_branch() {
     // Rods shorter than the crank lock before the slider reaches the pivot: the remaining samples stay where x ≥ 0.
     let text =
         near_a_change_point("interval: [0.093, 0.12]", "bounds: { chebyshev: { order: 6 }, scan: { points: 19 } }");
@@ -165,7 +165,7 @@ fn samples_that_lock_do_not_go_on_beyond_the_gap_on_another_branch() {
 }
 
 #[test]
-fn a_parallelogram_passes_its_change_points_smoothly_and_says_so() {
+fn parallelogram_passes_and_reports_its_change_points() {
     let text = "
 analysis: kinematics
 bodies:

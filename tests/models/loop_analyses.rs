@@ -61,7 +61,7 @@ fn agree(bounds: [&Bounds; 2], methods: &[Method], allowed: f64) {
 
 /// Bricard's mechanism: five closure equations are independent, the sixth is not.
 #[test]
-fn a_redundant_loop_moves_alike() {
+fn formulations_agree_on_a_redundant_loop() {
     let description = model("bricard").duration(1.0).rows_every(0.1);
     for formulation in FORMULATIONS {
         let explained = within(description.clone(), formulation).study().explain().unwrap();
@@ -78,14 +78,14 @@ fn a_redundant_loop_moves_alike() {
 }
 
 #[test]
-fn equilibria_of_loops_are_alike() {
+fn formulations_agree_on_equilibria_of_loops() {
     let bounds =
         FORMULATIONS.map(|formulation| run(&within(four_bar("statics", "chebyshev: { order: 4 }"), formulation)));
     agree([&bounds[0], &bounds[1]], &[Method::Chebyshev], 1e-9);
 }
 
 #[test]
-fn loops_vibrate_alike() {
+fn formulations_agree_on_vibrations_of_loops() {
     let text = "chebyshev: { order: 4 }";
     let bounds =
         FORMULATIONS.map(|formulation| run(&within(four_bar("modes\ninitial: equilibrium", text), formulation)));
@@ -102,7 +102,7 @@ fn loops_vibrate_alike() {
 
 /// The explicit method closes loops by projections in both; HHT-I3 with short steps is where both end.
 #[test]
-fn the_explicit_method_moves_loops_alike() {
+fn formulations_agree_on_explicit_motions_of_loops() {
     for name in ["slider_crank", "spatial_four_bar", "excavator"] {
         let description = model(name).at_most(0.5).rows_every(0.05);
         let bounds = FORMULATIONS.map(|formulation| {
@@ -118,7 +118,7 @@ fn the_explicit_method_moves_loops_alike() {
 /// Certified bounds in joint coordinates hold every sample: those of the scheme the samples of its steps, those of the
 /// motion the ones of the explicit method under a tight tolerance.
 #[test]
-fn enclosures_of_loops_hold_every_sample() {
+fn enclosures_of_loops_contain_every_sample() {
     let loops = within(model("slider_crank_one").duration(0.1).rows_every(0.01).scan(21), Formulation::Joint);
     let explained = loops.study().explain().unwrap();
     assert!(explained.formulation.contains("; loops are cut at "), "{}", explained.formulation);

@@ -37,7 +37,7 @@ fn cut(description: &Subject, simulator: &Simulator) -> Vec<String> {
 
 #[test]
 #[ignore = "2 s"]
-fn no_cut_is_longer_than_that_of_the_shallowest_trees() {
+fn chosen_cut_is_never_longer_than_the_shallowest() {
     let mut shorter = Vec::new();
     for path in model_files() {
         let description = within(load(&path), Formulation::Joint);
@@ -69,7 +69,7 @@ fn no_cut_is_longer_than_that_of_the_shallowest_trees() {
 
 /// Bounds do not depend on the cut.
 #[test]
-fn bounds_are_those_of_absolute_coordinates() {
+fn bounds_match_those_of_absolute_coordinates() {
     for name in ["excavator", "peaucellier"] {
         let [absolute, joint] = [Formulation::Absolute, Formulation::Joint]
             .map(|formulation| run(&within(model(name).at_most(0.5), formulation).rows_every(0.05).scan(3)));
@@ -111,7 +111,7 @@ bounds: {{ }}
 }
 
 #[test]
-fn loops_are_cut_where_friction_needs_the_reaction() {
+fn loops_are_cut_at_joints_with_friction() {
     for joint in ["A", "B", "C", "D"] {
         let description = read(&rubbing(joint));
         let chosen = study::prepare(within(description.clone(), Formulation::Joint).study().description()).unwrap();
@@ -129,7 +129,7 @@ fn loops_are_cut_where_friction_needs_the_reaction() {
 
 /// The start value of a body's angle is not measured against the guess of its parent's.
 #[test]
-fn angles_at_the_start_do_not_depend_on_guesses_of_others() {
+fn start_angles_do_not_depend_on_other_guesses() {
     let text = rubbing("C").replace("crank.angle: 0.5, crank.angular_velocity: 6", "coupler.angle: 0.7");
     for guess in ["crank.angle: 0.6, rocker.angle: 1.8", "crank.angle: 0.8, rocker.angle: 1.6"] {
         let text = text.replace("coupler.angle: 0.8, rocker.angle: 1.8", guess);

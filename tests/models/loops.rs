@@ -108,7 +108,7 @@ bounds: {{ scan: {{ points: 21 }}, chebyshev: {{ order: 4 }} }}
 
 /// Asserts that the formulations agree at the end of Richardson's extrapolation, to `allowed` of the largest value.
 #[track_caller]
-fn alike(text: &str, names: &[&str], h: f64, allowed: f64) {
+fn assert_formulations_agree(text: &str, names: &[&str], h: f64, allowed: f64) {
     let limits = [Formulation::Absolute, Formulation::Joint].map(|formulation| {
         let runs = [h, 0.5 * h].map(|h| nominal(&within(read(text), formulation).step(h)));
         names.iter().map(|name| richardson(curve(&runs[0], name), curve(&runs[1], name))).collect::<Vec<_>>()
@@ -121,20 +121,25 @@ fn alike(text: &str, names: &[&str], h: f64, allowed: f64) {
 }
 
 #[test]
-fn a_kite_and_linkages_near_a_change_point_move_alike() {
+fn formulations_agree_near_change_points() {
     // A kite: crank and base, coupler and rocker alike. It is flat where the crank points along the base.
-    alike(&four_bar([1.0, 1.0, 0.7, 0.7], [1.2, -0.6, 2.2], 2.0), &["left", "top", "right", "energy"], 5e-4, 1e-4);
+    assert_formulations_agree(
+        &four_bar([1.0, 1.0, 0.7, 0.7], [1.2, -0.6, 2.2], 2.0),
+        &["left", "top", "right", "energy"],
+        5e-4,
+        1e-4,
+    );
     // Parallelograms but for one per cent: the crank turns over, or the linkage swings back before it is flat.
     for crank in [0.99, 1.01] {
         let text = four_bar([1.0, crank, 1.0, 1.0], [1.2, 0.0, 1.2], 1.0);
-        alike(&text, &["left", "top", "right", "energy"], 2.5e-4, 1e-3);
+        assert_formulations_agree(&text, &["left", "top", "right", "energy"], 2.5e-4, 1e-3);
     }
 }
 
 /// A box of lengths with the parallelogram in it: on its two sides linkages move differently. Joint coordinates bound
 /// the same motions as absolute ones, and report it where they cannot.
 #[test]
-fn a_box_across_a_change_point_is_bounded_as_in_absolute_coordinates() {
+fn bounds_across_a_change_point_match_absolute_coordinates() {
     let text = four_bar([1.0, 1.0, 1.0, 1.0], [1.2, 0.0, 1.2], 1.0);
     let [absolute, joint] = [Formulation::Absolute, Formulation::Joint]
         .map(|formulation| run_methods(&within(read(&text), formulation).step(2.5e-4).duration(0.4), None));
@@ -172,7 +177,7 @@ fn auto_closes_loops_in_the_branch_of_absolute_coordinates() {
 
 /// Two loops that share a rocker, one of them with a slider, and a gear between cranks.
 #[test]
-fn loops_that_share_links_and_gears_move_alike() {
+fn formulations_agree_on_loops_with_shared_links() {
     let text = "
 bodies:
   ground: { points: { A: [0, 0], D: [1, 0], E: [1.8, 0.1] } }
@@ -199,8 +204,8 @@ outputs: { crank: crank.angle, slider: slider.x, wheel: wheel.angle, force: C.fo
 simulation: { duration: 1, step: 1e-3, output_step: 0.01 }
 bounds: { }
 ";
-    alike(text, &["crank", "slider", "wheel", "energy"], 5e-4, 1e-4);
-    alike(text, &["force"], 2.5e-4, 1e-3);
+    assert_formulations_agree(text, &["crank", "slider", "wheel", "energy"], 5e-4, 1e-4);
+    assert_formulations_agree(text, &["force"], 2.5e-4, 1e-3);
 }
 
 #[test]

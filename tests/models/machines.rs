@@ -50,7 +50,7 @@ fn arms(t: f64) -> [f64; 3] {
 }
 
 #[test]
-fn the_delta_robots_plate_is_where_three_spheres_meet() {
+fn plate_of_the_delta_robot_matches_three_spheres() {
     let formulas = ["plate.x", "plate.y", "plate.z", "plate.p0"];
     let bounds = nominal(&model("delta_robot").observing(&formulas));
     for (index, name) in formulas[..3].iter().enumerate() {
@@ -139,7 +139,7 @@ fn geneva(t: f64) -> [f64; 3] {
 }
 
 #[test]
-fn the_geneva_wheel_turns_as_its_slot_is_pushed() {
+fn geneva_wheel_matches_the_pin_in_its_slot() {
     let formulas = ["wheel.angle - pi", "wheel.angular_velocity", "slot.force"];
     let runs = [2.0, 1.0].map(|steps| nominal(&model("geneva").observing(&formulas).step(steps / 3000.0)));
     let errors = runs.map(|bounds| {

@@ -99,7 +99,7 @@ simulation: {{ duration: 1, step: 1e-3, output_step: 0.01 }}
 /// An arm without mass on a hinge, placed by springs: joint coordinates find its balance, absolute ones report the
 /// reason.
 #[test]
-fn an_arm_on_a_hinge_is_placed_by_springs() {
+fn springs_determine_the_angle_of_a_massless_arm() {
     let text = |formulation: &str| {
         format!(
             r#"
@@ -131,7 +131,7 @@ simulation: {{ duration: 2, step: 1e-3, output_step: 0.05, formulation: {formula
 }
 
 #[test]
-fn what_nothing_places_is_refused_with_its_name() {
+fn undetermined_massless_body_is_refused_by_name() {
     let message = |effects: &str| {
         let text = format!(
             "

@@ -47,7 +47,7 @@ fn assert_same(bounds: &str, what: &str, [of_width, of_errors]: [f64; 2], least:
 }
 
 #[test]
-fn of_oscillators_with_bands_full_of_turns() {
+fn bounds_of_oscillators_are_invariant() {
     let parts = [(0.11, 1.2, 15.0), (0.07, 0.9, 12.0)];
     let with =
         |bounds: &str| format!("simulation: {{ duration: 40, step: 0.02, output_step: 0.5 }}\nbounds: {bounds}\n");
@@ -127,7 +127,7 @@ bounds: {{ {bounds} }}
 }
 
 #[test]
-fn of_a_slider_crank() {
+fn bounds_of_a_slider_crank_are_invariant() {
     for bounds in [METHODS, "chebyshev: { order: 5, expand: output }", "tolerance: 1e-2"] {
         let known = run(&slider_crank((0.0, 0.0), 1.0, 1.0, [0, 1], bounds));
         let ordered = run(&slider_crank((0.0, 0.0), 1.0, 1.0, [1, 0], bounds));

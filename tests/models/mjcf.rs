@@ -126,7 +126,7 @@ fn inertias_of_geoms_follow_the_mass() {
 
 /// A model with elements that a flag disables moves as a model without these elements.
 #[test]
-fn flags_leave_out_what_they_disable() {
+fn flags_disable_their_elements() {
     let robot = |flags: &str, joint: &str, rest: &str| {
         Files::new(&format!(
             "<mujoco><option><flag {flags}/></option><worldbody><body name='a'><joint name='one' axis='0 1 0' {joint}/>\
@@ -183,7 +183,7 @@ fn the_model_gives_points_to_bodies() {
 /// MuJoCo 4.0.0, `implicitfast` at 1e-5 s, contacts off: joints and the crate's floor after each second; it is of order
 /// one.
 #[test]
-fn a_crane_moves_as_mujoco_says() {
+fn crane_matches_mujoco() {
     let bounds = nominal(&crate::common::model("crane"));
     let wanted = [
         (1.0, [0.18612467, 0.063016236, -0.0058981674, -0.032910286, 0.26071602]),

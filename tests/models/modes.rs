@@ -12,7 +12,7 @@ fn frequency(bounds: &Bounds, mode: usize) -> f64 {
 }
 
 #[test]
-fn a_chain_of_two_masses_vibrates_as_its_closed_form_says() {
+fn modes_of_two_masses_match_the_closed_form() {
     let bounds = run(&example("modes.yaml"));
     let (k, m, c) = (100.0, 2.0, 0.2);
     for (mode, sign) in [(1, -1.0), (2, 1.0)] {
@@ -100,7 +100,7 @@ bounds: {{ chebyshev: {{ order: 4 }} }}
 }
 
 #[test]
-fn damping_goes_on_smoothly_beyond_the_critical() {
+fn damping_is_smooth_through_the_critical_value() {
     for damping in [0.4, 8.0, 19.0, 30.0] {
         let bounds = nominal(&read(&oscillator(&damping.to_string())));
         close(frequency(&bounds, 1), 5.0, 1e-9);
@@ -139,7 +139,7 @@ bounds: { chebyshev: { order: 9 }, scan: { points: 31 } }
 }
 
 #[test]
-fn determinant_and_trace_of_a_pendulum_on_a_cart_are_those_of_its_equations() {
+fn modes_of_a_pendulum_on_a_cart_match_its_equations() {
     // A cart on a spring with a compound pendulum: M = [m + M, m l; m l, J + m l²], K = [k, 0; 0, m g l] at rest.
     let text = |formulation: &str| {
         format!(
@@ -170,7 +170,7 @@ simulation: {{ duration: 1, formulation: {formulation} }}
 }
 
 #[test]
-fn modes_of_a_motion_are_told_in_every_row() {
+fn modes_of_a_motion_are_given_in_every_row() {
     // A pendulum that swings: its stiffness is m g l cos θ, that of its own row.
     let text = "
 analysis: modes
@@ -212,7 +212,7 @@ outputs: { tip: blade.end.y }
 }
 
 #[test]
-fn a_chain_with_any_damping_vibrates_as_another_solver_says() {
+fn damped_modes_of_a_chain_match_another_solver() {
     let text = "
 analysis: modes
 modes: { responses: { end: { load: x3, output: x1, from: 1.5, to: 6, points: 3 } } }
@@ -245,7 +245,7 @@ outputs: { x1: a.x, x2: b.x, x3: c.x }
 }
 
 #[test]
-fn a_plate_in_space_with_any_damping_vibrates_as_another_solver_says() {
+fn damped_modes_of_a_plate_in_space_match_another_solver() {
     // Six springs and dampers that are not stretched: K = Σ k a aᵀ and C = Σ c a aᵀ with a = (n, r × n), M = diag(m, m,
     // m, J).
     let text = "
@@ -316,7 +316,7 @@ bounds: { chebyshev: { order: 12 }, scan: { points: 41 } }
 }
 
 #[test]
-fn a_response_over_the_box_has_its_closed_forms_bounds() {
+fn bounds_of_a_response_match_closed_forms() {
     let text = "
 analysis: modes
 modes: { responses: { push: { load: x, output: x, from: 0.4, to: 1.6, points: 9 } } }
@@ -350,7 +350,7 @@ bounds: { chebyshev: { order: 8 }, scan: { points: 101 } }
 /// f = √(k/m)/2π and ζ = c/(2 √(k m)) of one mass over the box: margins of requirements on them, and on the response
 /// k⁻¹ of slow loads, and which tolerance matters: of ln f, k and m have ½ each.
 #[test]
-fn requirements_on_frequencies_have_the_margins_of_closed_forms() {
+fn margins_of_frequency_requirements_match_closed_forms() {
     let text = |limits: &str| {
         format!(
             "

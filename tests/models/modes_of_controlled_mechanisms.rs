@@ -7,7 +7,7 @@ use crate::modes_with_states::{Complex, TAU, are, largest_growth, one_of_each, r
 use crate::statics::{close, ends, example, value};
 
 #[test]
-fn an_arm_under_two_controllers_vibrates_as_scipy_says() {
+fn modes_of_an_arm_with_two_controllers_match_scipy() {
     // scipy.linalg.eigvals of the 8 × 8 matrix of angles, rates, integrals and filtered rates, with M(θ₂) and ∂²V/∂θ²
     // written out by hand.
     let wanted = [
@@ -44,7 +44,7 @@ simulation: {{ duration: 1, formulation: {formulation} }}
 /// J s² + K under a torque that follows 30 (0.6 − θ) − 0.6 ω with a lag of 50 ms: J, K and the equilibrium by mpmath,
 /// from the crank's angle alone.
 #[test]
-fn a_slider_crank_under_a_lagging_servo_grows_as_its_one_equation_says() {
+fn growth_of_a_slider_crank_with_servo_matches_equation() {
     let text = "
 analysis: modes
 modes: { at: equilibrium }
@@ -115,7 +115,7 @@ outputs: { x: a.x, y: y, f: glue.force.x }
 }
 
 #[test]
-fn modes_of_a_controlled_motion_are_told_in_every_row() {
+fn modes_of_a_controlled_motion_are_given_in_every_row() {
     // A pendulum of θ that an integral swings: J s³ + d s² + (m g l cos θ + 3) s + ki = 0 in its own row.
     let text = "
 analysis: modes

@@ -77,7 +77,7 @@ fn cubic(ki: f64) -> Vec<Complex> {
 }
 
 #[test]
-fn a_mass_under_a_proportional_integral_controller_has_the_roots_of_its_cubic() {
+fn roots_of_a_pi_controlled_mass_match_its_cubic() {
     let bounds = run(&read(&controlled("{ value: 60, tolerance: 15% }", "")));
     let [lag, pair] = cubic(60.0)[..] else { panic!("a lag and a pair") };
     are(&bounds, &[lag, pair], 1e-10);
@@ -100,7 +100,7 @@ fn a_mass_under_a_proportional_integral_controller_has_the_roots_of_its_cubic() 
 }
 
 #[test]
-fn a_loop_becomes_unstable_where_hurwitz_says() {
+fn limit_of_stability_matches_hurwitz() {
     // 2 s³ + 4 s² + 70 s + ki is stable up to ki = 4·70/2, where it vibrates with √35 rad/s.
     let limit = 140.0;
     for (ki, sign) in [(limit * (1.0 - 1e-8), -1.0), (limit * (1.0 + 1e-8), 1.0)] {
@@ -116,7 +116,7 @@ fn a_loop_becomes_unstable_where_hurwitz_says() {
 }
 
 #[test]
-fn an_integral_without_damping_of_its_own_pushes_away() {
+fn integral_with_negative_gain_is_unstable() {
     // With a negative gain an eigenvalue is positive: the time constant is that of growth, and negative.
     let bounds = nominal(&read(&controlled("-30", "")));
     let roots = cubic(-30.0);
@@ -130,7 +130,7 @@ fn an_integral_without_damping_of_its_own_pushes_away() {
 }
 
 #[test]
-fn a_direct_current_motor_has_an_electric_and_a_mechanical_lag() {
+fn dc_motor_has_an_electric_and_a_mechanical_lag() {
     // L i̇ = −R i − k N ω, J ω̇ = k N i − b ω; the angle is free.
     let text = |inductance: f64| {
         format!(
@@ -164,7 +164,7 @@ outputs: {{ current: drive.current, angle: rotor.angle }}
 }
 
 #[test]
-fn a_filter_has_its_poles_whatever_it_listens_to() {
+fn poles_of_a_filter_do_not_depend_on_its_input() {
     // A Butterworth filter of order 4 at 3 Hz, and one that is its double: repeated poles keep their accuracy, since
     // neither depends on the other.
     let w = TAU * 3.0;
@@ -200,7 +200,7 @@ outputs: {{ x: m.x, felt: felt, again: again }}
 }
 
 #[test]
-fn a_delayed_loop_becomes_unstable_where_the_delay_says() {
+fn limit_of_stability_of_a_delayed_loop_is_exact() {
     // ẏ = −k y(t − T) vibrates without damping at k T = π/2, with a period of 4 T; Padé's approximation of order 8 is
     // that to rounding there.
     let text = |gain: f64| {
@@ -246,7 +246,7 @@ fn a_response_goes_through_the_controller() {
 }
 
 #[test]
-fn a_vibration_stays_one_beyond_critical_damping_and_lags_that_meet_share_its_growth() {
+fn pairs_of_roots_are_followed_through_coincidence() {
     // m ẍ + c ẋ + k x = 0 with a filter that listens, and a loop of two lags: s² + 5 s + g, real up to g = 6.25.
     let text = |damping: &str, gain: &str| {
         format!(

@@ -51,7 +51,7 @@ fn the_cam_pushes_with_the_followers_inertia_and_spring() {
 }
 
 #[test]
-fn the_belts_strands_share_what_turns_the_fan() {
+fn strands_of_the_belt_share_the_torque_of_the_fan() {
     let (stiffness, damping, preload) = (2e5, 60.0, 300.0);
     let [first, second] = [0.04, 0.1];
     let stretch =

@@ -118,7 +118,7 @@ fn chain_of_ten() -> Sections {
 }
 
 #[test]
-fn bodies_that_no_output_needs_change_nothing() {
+fn bodies_needed_by_no_output_change_no_result() {
     let bare = pendulum("a", 0.0, ", tolerance: 2%");
     let full = bare.with(&chain_of_ten());
     let (bare, full) = (bare.model(), full.model());
@@ -199,7 +199,7 @@ pub(crate) fn difference(a: &Bounds, b: &Bounds) -> Vec<(String, f64)> {
 }
 
 #[test]
-fn welded_bodies_are_one_where_nothing_asks_for_the_weld() {
+fn welded_bodies_are_merged_if_no_output_needs_the_weld() {
     for (text, unknowns) in [(WELDED, (3, 6)), (WELDED_IN_SPACE, (8, 15))] {
         let model = |formulation: &str, step: &str, weld: bool| {
             let mut text = text.replace("FORMULATION", formulation).replace("STEP", step);
@@ -235,7 +235,7 @@ fn welded_bodies_are_one_where_nothing_asks_for_the_weld() {
 /// Sliders between linear springs and dampers: nothing of the Newton matrix changes with the motion, so nothing of it
 /// is factorised in a step.
 #[test]
-fn what_is_constant_is_eliminated_before_the_steps() {
+fn constant_parts_are_eliminated_before_the_steps() {
     let sliders = |inertia: &str| {
         read(&format!(
             "
@@ -275,7 +275,7 @@ simulation: {{ duration: 1, step: 1e-3, formulation: absolute }}
 }
 
 #[test]
-fn every_decision_is_explained_with_what_it_saves() {
+fn every_decision_is_explained_with_its_saving() {
     let (a, b, c) =
         (pendulum("a", 0.0, ", tolerance: 2%"), pendulum("b", 0.3, ", tolerance: 1%"), pendulum("c", 0.1, ""));
     let model = a.with(&b).with(&c).with(&chain_of_ten()).model();
@@ -340,7 +340,7 @@ bounds: { chebyshev: { order: 4 } }
 
 /// Outputs can be observed even if nothing can move.
 #[test]
-fn what_stands_still_can_be_observed() {
+fn bodies_at_rest_can_be_observed() {
     let text = |outputs: &str| {
         read(&format!(
             "

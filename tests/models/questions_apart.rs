@@ -72,7 +72,7 @@ fn numbers(summary: &Summary) -> Vec<(String, Vec<f64>)> {
 }
 
 #[test]
-fn parts_with_questions_are_models_run_apart() {
+fn parts_with_questions_match_separate_models() {
     let both = run_methods(&model(&[0, 1], [""; 3]), None).1;
     let alone = [0, 1].map(|part| run_methods(&model(&[part], [""; 3]), None).1);
     assert_eq!(both.subsystems.len(), 2);
@@ -97,7 +97,7 @@ fn parts_with_questions_are_models_run_apart() {
 }
 
 #[test]
-fn parts_apart_are_the_whole_within_the_errors() {
+fn separate_parts_match_the_whole_within_errors() {
     // An energy is of all bodies: they are simulated as one.
     let apart = run_methods(&model(&[0, 1], [""; 3]), None).1;
     let whole = run_methods(&model(&[0, 1], ["energy: kinetic_energy", "", ""]), None).1;
@@ -114,7 +114,7 @@ fn parts_apart_are_the_whole_within_the_errors() {
 }
 
 #[test]
-fn a_question_of_two_parts_unites_them() {
+fn question_of_two_parts_joins_them() {
     let sum = run_methods(&model(&[0, 1], ["", "both: fast1 + fast2 <= 2.4 m/s", ""]), None).1;
     assert!(sum.subsystems.is_empty());
     // a₁ω₁ + a₂ω₂ at their largest.
@@ -130,7 +130,7 @@ fn a_question_of_two_parts_unites_them() {
 
 #[test]
 #[ignore = "10 s"]
-fn yields_of_parts_are_those_of_the_whole() {
+fn yields_of_parts_match_those_of_the_whole() {
     let statistics = "statistics: {}\n";
     // Limits that some fail: a 3σ normal amplitude.
     let more = "tight1: fast1 <= 0.82 m/s, tight2: fast2 <= 1.27 m/s";
@@ -156,7 +156,7 @@ fn yields_of_parts_are_those_of_the_whole() {
 /// The program of a step is the same with and without questions, and so are the bounds of the outputs; statistics of
 /// laws within their intervals take no simulation.
 #[test]
-fn who_does_not_ask_does_not_pay() {
+fn questions_do_not_change_the_steps() {
     let text = |more: &str, asked: &str| {
         read(&format!(
             "{}outputs: {{ x1: one.x{more} }}\n{asked}simulation: {{ duration: 1.1 s, step: 2 ms, output_step: 20 ms }}\nbounds: {{ chebyshev: {{ order: 4 }} }}\n",

@@ -80,7 +80,7 @@ fn statistics_go_through_events() {
 /// A ball whose contact dissipates, in its second contact: half of the box has bounced. Against 490 000 products on a
 /// lattice by Runge and Kutta's method, which are known to 3e-4 of the deviation.
 #[test]
-fn statistics_are_those_of_the_polynomials_between_events() {
+fn statistics_between_events_match_products() {
     let simulation = "duration: 1.74, step: 1e-4, output_step: 0.58";
     let text = BOUNCE.replace("duration: 2, step: 1e-4, output_step: 0.02", simulation).replace("order: 3", "order: 5");
     let text = format!("{text}statistics: {{ quantiles: [0.135%, 50%, 99.865%] }}\n");

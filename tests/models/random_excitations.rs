@@ -74,7 +74,7 @@ fn by_lyapunov(roughness: f64, body: f64) -> f64 {
 }
 
 #[test]
-fn roads_shake_a_quarter_car_as_lyapunovs_equation_says() {
+fn response_of_a_quarter_car_matches_lyapunovs_equation() {
     for (class, roughness) in [("A", 16e-6), ("B", 64e-6), ("C", 256e-6)] {
         let (_, bounds, summary) = run(&quarter_car(class, "350 kg ± 60 kg"));
         let found = output(&bounds, "shake.rms");
@@ -136,7 +136,7 @@ fn on_a_rough_road(body: f64, damper: f64, tyre: f64) -> f64 {
 }
 
 #[test]
-fn a_rough_road_shakes_half_a_car_as_sums_over_frequencies_say() {
+fn response_of_a_half_car_matches_sums_over_frequencies() {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/examples/ride_comfort.yaml");
     let (bounds, _) = run_methods(&load(&path), None);
     let found = output(&bounds, "driver.rms");
@@ -184,7 +184,7 @@ fn variance(stiffness: f64) -> f64 {
 }
 
 #[test]
-fn white_noise_moves_an_oscillator_as_closed_forms_say() {
+fn response_to_white_noise_matches_closed_forms() {
     let (_, bounds, _) = run(&format!("analysis: modes\n{}", oscillator("160 ± 10%", 0.0, "")));
     let (rms, crossings) = (output(&bounds, "x.rms"), output(&bounds, "x.crossings"));
     // The band omits 0.02 % of the variance, and 4 % of that of the rate, S/(4 c m), above 25 Hz: S/(4π² f).
@@ -200,7 +200,7 @@ fn white_noise_moves_an_oscillator_as_closed_forms_say() {
 }
 
 #[test]
-fn what_follows_an_excitation_is_the_same_later() {
+fn delayed_excitation_is_the_same_function() {
     // The variance of x(t) − x(t − τ) is ∫ 2 (1 − cos 2π f τ) G df.
     let text = "
 excitations:
@@ -236,7 +236,7 @@ const MOTION: &str = "simulation: { duration: 4, step: 5e-3, output_step: 1 }";
 
 #[test]
 #[ignore = "2 s"]
-fn samples_have_the_law_of_an_oscillator_of_uncertain_stiffness() {
+fn samples_follow_the_law_of_an_uncertain_oscillator() {
     let asked = format!("{MOTION}\nstatistics: {{ samples: 3000, quantiles: [50%, 99%] }}\n");
     let found = statistics(&oscillator("160 ± 40%", 0.0, &asked));
     let [own, ..] = &found.outputs[..] else { panic!("one output") };
@@ -289,7 +289,7 @@ statistics: {{ samples: 2048, quantiles: [50%], {exposure} seed: 3 }}
 
 #[test]
 #[ignore = "2 s"]
-fn first_passages_are_those_of_rice() {
+fn first_passages_match_rices_formula() {
     let short = passage(4.0, "exposure: 6 s,");
     // Not more than it is above at first, and rises on average: ν⁺ = ω/(2π) exp(−L²/(2σ²)). Rises come in groups.
     let rate = STIFFNESS.sqrt() / std::f64::consts::TAU * (-0.5_f64 * 2.5 * 2.5).exp();
@@ -325,7 +325,7 @@ fn seeds_choose_samples_and_realisations() {
 }
 
 #[test]
-fn a_smooth_begin_starts_at_zero() {
+fn ramped_excitation_starts_at_zero() {
     let further =
         "simulation: { duration: 1, step: 0.01, output_step: 0.25 }\nstatistics: { samples: 1024, quantiles: [50%] }\n";
     let text = oscillator("160", 0.0, further).replace("lines: 60", "lines: 30, ramp: 0.5 s");

@@ -62,7 +62,7 @@ fn quarter(l: f64, start: f64) -> f64 {
 }
 
 #[test]
-fn a_pendulum_swings_as_elliptic_integrals_say() {
+fn reductions_of_a_pendulum_match_elliptic_integrals() {
     let summary = summary(&read(PENDULUM));
     let (short, long) = (0.4 * 0.97, 0.4 * 1.03);
     let [small, large] = [12.0, 16.0].map(f64::to_radians);
@@ -94,7 +94,7 @@ simulation: { duration: 1.2 s, step: 0.5 ms, output_step: 4 ms }
 
 #[test]
 #[ignore = "2 s"]
-fn a_damped_oscillator_overshoots_and_settles_as_its_closed_form() {
+fn overshoot_and_settling_time_match_closed_forms() {
     let summary = summary(&read(OSCILLATOR));
     let x = |k: f64, c: f64, t: f64| {
         let (decay, omega) = (c / 4.0, k / 2.0);
@@ -135,7 +135,7 @@ fn a_damped_oscillator_overshoots_and_settles_as_its_closed_form() {
 
 /// A maximum that jumps over the box: of two humps, each is the higher one in half of it.
 #[test]
-fn a_maximum_that_changes_place_has_its_kink() {
+fn maximum_with_a_jumping_instant_has_a_kink() {
     let text = "
 parameters: { h: [0.4, 0.6], l: 1 m, m: 1 kg }
 bodies: { rod: { mass: m, inertia: m*l^2, coordinates: [angle] } }
@@ -177,7 +177,7 @@ bounds: { chebyshev: { order: 5 } }
 /// Humps that pass from one window of the time to another: a channel is far off where another one is larger, and the
 /// error of the maximum is that of the maximum.
 #[test]
-fn a_maximum_of_humps_that_move_over_the_time_is_off_by_little() {
+fn maximum_of_moving_humps_is_within_its_error() {
     let text = "
 parameters: { k: { interval: [95, 105], unit: N/m }, w: { interval: [8, 12], unit: rad/s } }
 bodies: { m: { mass: 1 kg, coordinates: [x] } }
@@ -212,7 +212,7 @@ bounds: { chebyshev: { order: 6 } }
 }
 
 #[test]
-fn what_is_not_asked_for_is_not_there() {
+fn unrequested_reductions_change_no_bounds() {
     let begin = PENDULUM.find("  stroke:").unwrap();
     let end = PENDULUM.find("simulation:").unwrap();
     let without = format!("{}{}", &PENDULUM[..begin], &PENDULUM[end..]);
@@ -227,7 +227,7 @@ fn what_is_not_asked_for_is_not_there() {
 
 /// A mass on a spring, thrown from rest at v: it is 0.2 m away at asin(0.2 ω/v)/ω, if v/ω reaches as far.
 #[test]
-fn an_event_that_does_not_always_occur_is_told_from_one_that_does() {
+fn events_that_may_not_occur_are_reported() {
     let text = "
 parameters: { v: 2 m/s ± 10%, k: 100 N/m ± 5% }
 bodies: { ball: { mass: 1 kg, coordinates: [x] } }

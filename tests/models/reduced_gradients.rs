@@ -52,7 +52,7 @@ fn is(found: &[ReducedGradients], name: &str, of: impl Fn(f64) -> f64) {
 }
 
 #[test]
-fn derivatives_are_those_of_the_closed_forms() {
+fn derivatives_match_closed_forms() {
     let found = oscillator();
     let x = |k: f64, t: f64| (k.sqrt() * t).sin() / k.sqrt();
     let pi = std::f64::consts::PI;
@@ -79,7 +79,7 @@ fn derivatives_are_those_of_the_closed_forms() {
 }
 
 #[test]
-fn what_does_not_occur_has_no_gradient_and_what_holds_at_once_has_none_but_zero() {
+fn absent_events_have_no_gradient_and_immediate_ones_zero() {
     let found = oscillator();
     assert!(found.iter().all(|own| own.name != "never"));
     let at_once = found.iter().find(|own| own.name == "at_once").unwrap();

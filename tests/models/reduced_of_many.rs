@@ -67,7 +67,7 @@ fn ends(of: impl Fn(f64, f64) -> f64) -> [f64; 2] {
 }
 
 #[test]
-fn ends_of_fifteen_parameters_are_those_of_closed_forms() {
+fn ends_of_fifteen_parameters_match_closed_forms() {
     let summary = summary("bounds: { tolerance: 1e-3 }");
     let check = |name: &str, of: &dyn Fn(f64, f64) -> f64| {
         let band = &summary.reduced.iter().find(|own| own.name == name).unwrap().bands[0];
@@ -88,7 +88,7 @@ fn ends_of_fifteen_parameters_are_those_of_closed_forms() {
 }
 
 #[test]
-fn margins_of_fifteen_parameters_are_those_of_closed_forms() {
+fn margins_of_fifteen_parameters_match_closed_forms() {
     let summary = summary("bounds: { tolerance: 1e-3 }");
     let check = |name: &str, verdict: Verdict, of: &dyn Fn(f64, f64) -> f64| {
         let own = summary.requirements.iter().find(|own| own.name == name).unwrap();
@@ -104,7 +104,7 @@ fn margins_of_fifteen_parameters_are_those_of_closed_forms() {
 /// Against 200 000 products by the closed forms.
 #[test]
 #[ignore = "4 s"]
-fn statistics_of_fifteen_parameters_are_those_of_products() {
+fn statistics_of_fifteen_parameters_match_products() {
     const PRODUCTS: usize = 200_000;
     let summary = summary("bounds: { tolerance: 1e-2 }\nstatistics: { quantiles: [5%, 95%] }");
     let statistics = &summary.statistics.as_ref().unwrap().summary;
@@ -161,7 +161,7 @@ fn statistics_of_fifteen_parameters_are_those_of_products() {
 /// One factor for all tolerances, so that m/Σ k is 0.215² in the worst case: a study of the result holds, and little of
 /// the margin is left.
 #[test]
-fn tolerances_of_fifteen_parameters_are_as_loose_as_may_be() {
+fn tolerances_of_fifteen_parameters_use_the_margin() {
     let study = study_of(&text("  short: mass.x <= 0.215", "bounds: { tolerance: 1e-2 }"));
     let found = study.allocate(Criterion::WorstCase, 3.0).unwrap();
     let (nominal, spread) = (0..SPRINGS)

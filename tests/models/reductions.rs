@@ -84,7 +84,7 @@ fn closed(name: &str, a: f64, w: f64) -> f64 {
 }
 
 #[test]
-fn every_reduction_is_that_of_its_closed_form() {
+fn every_reduction_matches_its_closed_form() {
     let (_, summary) = run_methods(&read(&[OSCILLATOR, REDUCED, SIMULATION].concat()), None);
     for own in &summary.reduced {
         let band = &own.bands[0];
@@ -132,7 +132,7 @@ fn instructions(description: &Subject) -> Vec<usize> {
 /// Sections that ask for nothing, and requests that were taken out again, leave bytes, instructions and simulations as
 /// they were.
 #[test]
-fn what_asks_for_nothing_pays_nothing() {
+fn empty_sections_cost_nothing() {
     let plain = [OSCILLATOR, SIMULATION].concat();
     let of = |text: &str| {
         let description = read(text);

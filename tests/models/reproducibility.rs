@@ -23,7 +23,7 @@ fn results_do_not_depend_on_the_number_of_threads() {
 
 #[test]
 #[ignore = "10 s: every method three times"]
-fn results_with_a_tolerance_do_not_depend_on_the_number_of_threads() {
+fn results_to_a_tolerance_do_not_depend_on_threads() {
     let description = model("slider_crank").duration(0.5).tolerance(1e-6);
     let one = bytes(&description, 1);
     for threads in [2, 7] {

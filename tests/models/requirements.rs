@@ -35,7 +35,7 @@ fn verdicts_follow_from_bounds_and_samples() {
 
 /// Thrown up at 3 m/s under 9 m/s² it rises to 0.5 m, which meets a limit of 0.5 m in spite of rounding.
 #[test]
-fn what_meets_its_limit_exactly_is_not_violated() {
+fn limit_reached_exactly_is_not_violated() {
     let text = "
 bodies: { ball: { mass: 1, coordinates: [y] } }
 effects: { weight: { force: { on: ball, value: [0, -9] } } }
@@ -65,7 +65,7 @@ fn an_undecided_requirement_raises_the_order() {
 /// A slider that drifts either way is farthest from the middle at one end of the time or the other: its margin has a
 /// kink where it stands still, and its bounds in the rows have none.
 #[test]
-fn a_margin_that_changes_place_in_time_is_decided_by_rows() {
+fn margin_with_a_jumping_instant_is_decided_by_rows() {
     let model = "
 parameters: { a: 0 m ± 0.1 m, v: 0 m/s ± 1 m/s, b: 0 m ± 0.03 m }
 bodies: { slider: { mass: 1, coordinates: [x] } }
@@ -98,7 +98,7 @@ fn the_tutorials_four_bar_is_decided() {
 }
 
 #[test]
-fn an_uncertain_limit_that_no_equation_knows_counts() {
+fn uncertain_limit_in_no_equation_counts() {
     // x = k, at most twice = 1.4 m ± 0.1 m: at worst 1.2 m against 1.3 m (2 · 0.65 m).
     let text = "
 parameters:
@@ -124,7 +124,7 @@ bounds: { taylor: { order: 2 } }
 /// The page's slider crank: the stroke is 2 r, |ẍ| at the dead centre r ω² (1 + r/l), and x = r cos φ + √(l² − r² sin²
 /// φ).
 #[test]
-fn the_pages_slider_crank_is_that_of_its_closed_forms() {
+fn slider_crank_of_the_guide_matches_closed_forms() {
     let example = include_str!("../../docs/examples/requirements.yaml");
     let page = include_str!("../../docs/guides/requirements.md");
     assert!(page.contains(example), "the page shows the example");
@@ -154,7 +154,7 @@ fn the_pages_slider_crank_is_that_of_its_closed_forms() {
 /// A conserved output does not move, and no error is small compared with a band without width: its limits are decided
 /// by margin and error, in the first round.
 #[test]
-fn what_is_conserved_is_decided_at_once() {
+fn requirements_on_conserved_outputs_are_decided_at_once() {
     let text = "
 parameters: { m: 1.3 kg ± 5%, v: 2 m/s ± 3% }
 bodies: { a: { mass: m, coordinates: [x] }, b: { mass: 0.7, coordinates: [x] } }

@@ -99,7 +99,7 @@ fn a_link_without_mass_turns_against_its_inertia() {
 
 /// About such an axis, or along a slide, the equations would be singular.
 #[test]
-fn where_inertia_does_not_resist_mass_is_taken_with_a_warning() {
+fn missing_mass_is_replaced_with_a_warning() {
     for (kind, moments) in [("prismatic", [0.02; 3]), ("continuous", [0.02, 0.0, 0.02])] {
         let robot = urdf(&[link("a", 0.0, "<origin xyz='0.5 0 0'/>", moments), joint("j", kind, ["w", "a"], "")]);
         let model = robot.reading("outputs: { a: a.y }").unwrap_or_else(|error| panic!("{error}"));
@@ -203,7 +203,7 @@ fn an_angle_has_the_inertia_that_mujoco_computes() {
 }
 
 #[test]
-fn a_mesh_says_what_is_wrong_with_it() {
+fn faulty_meshes_are_reported() {
     let says = |mesh: &str, message: &str| {
         let found = Robot::new("robot.xml", &of_mesh(mesh, "")).reading("");
         let found = found.map_or_else(|error| error.to_string(), |model| model.warnings().to_string());

@@ -31,7 +31,7 @@ const OF_HAND: [&str; 6] = ["x", "y", "z", "x", "y", "z"];
 /// Sensors `force` and `torque` of MuJoCo 4.0 at a site in the origin of `hand`, which it holds itself: the opposite of
 /// the arm's wrench on the hand.
 #[test]
-fn a_held_body_of_an_mjcf_feels_what_mujocos_sensors_say() {
+fn wrench_on_a_welded_body_matches_mujocos_sensors() {
     let yaml = "mjcf: robot.xml\ninitial: { elbow.angle: 0.3, elbow.angular_velocity: 0.6 }";
     let names: [String; 6] = std::array::from_fn(|i| {
         let member = if i < 3 { "force_body" } else { "torque_body" };

@@ -106,7 +106,7 @@ simulation: {{ duration: 0.01, step: 1e-3 }}
 }
 
 #[test]
-fn the_heavy_top_is_that_of_another_formulation() {
+fn heavy_top_matches_another_formulation() {
     // t, centre of mass, p0, ω'_x, from minimal coordinates.
     let rows = reference("iftomm/heavy_top.csv");
     let formulas = ["top.x", "top.y", "top.z", "top.p0", "top.omega_body.x"];

@@ -130,7 +130,7 @@ fn a_chain_that_winds_up_starts_in_every_formulation() {
 
 /// A ball on a moving turntable may move along or spin.
 #[test]
-fn rotations_that_are_left_open_are_called_as_initial_calls_them() {
+fn open_rotations_have_the_names_of_initial() {
     let study = study_of(
         "
 bodies: { table: { mass: 1, inertia: 1 }, ball: { mass: 1, inertia: 0.01 } }

@@ -57,7 +57,7 @@ fn assert_height(bounds: &Bounds, method: Method, row: usize, stated: f64) {
 /// Before the ceiling is met the motion is a polynomial of second degree in the parameters, and the mass has no part in
 /// it; behind it ends are at corners, where the motion is known.
 #[test]
-fn rows_that_no_event_passes_have_the_errors_of_steps() {
+fn rows_without_events_have_only_step_errors() {
     let request = "bounds: { chebyshev: { order: 2 }, taylor: { order: 3 }, scan: { points: 4 } }";
     let (bounds, summary) = ran(study_of(&format!("{CEILING}{request}")));
     assert!(summary.integration.is_some_and(|name| name.contains("between events")));
@@ -121,7 +121,7 @@ bounds: { taylor: { order: 4 } }";
 /// has them on its side. The truth is of the same method.
 #[test]
 #[ignore = "2 s"]
-fn a_part_that_few_samples_are_in_is_not_left_out() {
+fn part_with_few_samples_is_included() {
     let parameters = "v0: { interval: [14.54, 16.86] }, K0: { interval: [2478, 3522] }";
     let request = "
 simulation: { duration: 2.436, step: 2e-3, output_step: 0.058 }

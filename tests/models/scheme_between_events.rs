@@ -36,7 +36,7 @@ fn is_by_scheme(summary: &Summary) -> bool {
 
 #[test]
 #[ignore = "3 s"]
-fn a_scheme_that_is_asked_for_is_taken_between_events() {
+fn requested_scheme_is_used_between_events() {
     for (simulation, stated) in [
         ("step: 1e-3, scheme: hht", 2e-2),
         ("tolerance: 1e-6, scheme: hht", 1e-5),

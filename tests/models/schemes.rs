@@ -139,7 +139,7 @@ fn amplification(scheme: Scheme, h: f64) -> Matrix3<f64> {
 }
 
 #[test]
-fn a_step_leaves_of_the_highest_frequencies_what_the_scheme_says() {
+fn damping_of_highest_frequencies_is_the_spectral_radius() {
     let radius = |matrix: Matrix3<f64>| largest(matrix.complex_eigenvalues().iter().map(|value| value.norm()));
     let strongest = Scheme::Hht { alpha: -1.0 / 3.0 };
     assert!((strongest.spectral_radius() - 0.5).abs() < 1e-15);
@@ -159,7 +159,7 @@ fn a_step_leaves_of_the_highest_frequencies_what_the_scheme_says() {
 }
 
 #[test]
-fn the_local_error_is_the_one_that_is_made() {
+fn estimated_local_error_is_exact() {
     // x = sin(ωt)/ω.
     for scheme in SCHEMES {
         let h = 1e-5;
@@ -232,7 +232,7 @@ fn jets_are_the_derivatives_of_every_scheme() {
 }
 
 #[test]
-fn index_2_keeps_velocities_on_the_constraints_and_lets_positions_drift() {
+fn index_2_keeps_velocity_constraints_but_positions_drift() {
     let description =
         model("pendulum").observing(&["bob.x^2 + bob.y^2 - length^2", "bob.x*bob.vx + bob.y*bob.vy"]).rows_every(0.01);
     let worst = |scheme, h| nominal(&description, scheme, h).into_iter().map(largest).collect::<Vec<f64>>();
@@ -263,7 +263,7 @@ fn reaction_of_steps(description: &Subject, scheme: Scheme, h: f64) -> Vec<f64> 
 }
 
 #[test]
-fn reactions_of_the_trapezoidal_rule_alternate_and_never_come_to_rest() {
+fn reactions_of_the_trapezoidal_rule_keep_alternating() {
     // Alternating part of a curve: half of a value's difference from its neighbours' mean, with the sign of its parity.
     let alternating = |scheme, h: f64, time: f64| {
         let description = model("pendulum").observing(&["rod.force"]).duration(4.0).rows_every(h);
@@ -285,7 +285,7 @@ fn reactions_of_the_trapezoidal_rule_alternate_and_never_come_to_rest() {
 
 #[test]
 #[ignore = "2 s"]
-fn redundancy_and_singular_positions_are_passed_by_every_scheme() {
+fn every_scheme_passes_redundancy_and_singularities() {
     // Three cranks on a bar, one constraint redundant, three times flat; two loops, three times on a line.
     let cranks = read(&parallelogram(3, 0.5, 0.0)).observing(&["c0.angle"]).rows_every(2.0);
     let loops = read(&two_loops()).observing(&["bar0.end.x", "bar0.end.y"]).rows_every(2.5);

@@ -37,7 +37,7 @@ bounds: {{ tolerance: 1e-3 }}
 /// sin(ω t)/ω is largest and least within the box, not at its corners.
 #[test]
 #[ignore = "2 s"]
-fn ends_are_those_of_the_closed_form_with_statistics_and_without() {
+fn ends_match_the_closed_form_with_or_without_statistics() {
     let (bounds, summary) = run("");
     let (with, _) = run("statistics: {}");
     let [stiffness, softest] = [1.1, 0.9].map(|share| share * SPRINGS.iter().sum::<f64>());
@@ -68,7 +68,7 @@ fn ends_are_those_of_the_closed_form_with_statistics_and_without() {
 
 /// Against 200 000 products by the closed form.
 #[test]
-fn statistics_are_those_of_products() {
+fn statistics_match_products() {
     const PRODUCTS: usize = 200_000;
     let (bounds, summary) = run("statistics: { quantiles: [5%, 50%, 95%] }");
     let found = summary.statistics.unwrap();

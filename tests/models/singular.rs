@@ -49,7 +49,7 @@ pub fn one_crank(cranks: f64, angle: f64, rate: f64) -> f64 {
 }
 
 #[test]
-fn a_redundant_constraint_is_named_and_the_motion_is_that_of_one_crank() {
+fn redundant_constraint_is_named_and_leaves_the_motion() {
     let description = read(&parallelogram(3, 0.5, 0.0));
     let (bounds, summary) = run_methods(&description, None);
     assert_eq!((summary.degrees_of_freedom, summary.redundant_constraints.as_slice()), (1, &["up2.y".to_owned()][..]));

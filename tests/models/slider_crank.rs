@@ -50,7 +50,7 @@ fn bound_errors(description: &Subject, method: Method) -> [f64; 2] {
 }
 
 #[test]
-fn nominal_motion_is_the_references() {
+fn nominal_motion_converges_to_the_reference() {
     for h in [1e-3, 5e-4, 2.5e-4, 1e-4] {
         let [x, angle, speed] = nominal_errors(h);
         println!("h = {h}: x3 {x:.3e}, angle {angle:.3e}, speed {speed:.3e}");
@@ -95,7 +95,7 @@ fn chebyshev_bounds_are_the_true_range() {
 }
 
 #[test]
-fn errors_of_low_orders_are_those_of_the_polynomials() {
+fn errors_of_low_orders_match_the_polynomials() {
     // With exact solves the order-5 surrogate's range is within 5.8e-4 and 1.7e-3 of the true one; Taylor of order 2 is
     // off by 6.4e-2 and of order 6 by 1 (all measured with the reference's method). The steps add 5e-5.
     let [lower, upper] = bound_errors(&slider_crank().step(1e-4).chebyshev(5, RangeKind::Tight), Method::Chebyshev);
@@ -144,7 +144,7 @@ fn two_uncertain_parameters_are_bounded_tightly() {
 }
 
 #[test]
-fn the_model_file_is_the_same_as_that_with_one_parameter() {
+fn both_model_files_have_the_same_nominal_motion() {
     // Only tau is uncertain in one and certain in the other.
     let [one, two] = ["slider_crank_one", "slider_crank"].map(|name| nominal(&model(name).observing(&["slider.x"])));
     let difference = distance(&one.outputs[0].nominal, &two.outputs[0].nominal);

@@ -11,13 +11,13 @@ use crate::run_all::assert_complete;
 const LONG: [&str; 4] = ["door", "half_car", "rough_road", "slider_crank_clearance"];
 
 #[test]
-fn bounds_are_those_of_the_snapshots() {
+fn bounds_match_the_snapshots() {
     compare(&|file| !LONG.contains(&file));
 }
 
 #[test]
 #[ignore = "20 s"]
-fn bounds_of_long_runs_are_those_of_the_snapshots() {
+fn bounds_of_long_runs_match_the_snapshots() {
     compare(&|file| LONG.contains(&file));
 }
 

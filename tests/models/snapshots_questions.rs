@@ -52,7 +52,7 @@ fn table(summary: &Summary) -> String {
 }
 
 #[test]
-fn answers_are_those_of_the_snapshots() {
+fn answers_match_the_snapshots() {
     let mut settings = insta::Settings::clone_current();
     settings.set_snapshot_path("../../snapshots/answers");
     settings.set_prepend_module_to_snapshot(false);

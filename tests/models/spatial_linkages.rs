@@ -30,7 +30,7 @@ fn the_spatial_four_bar_closes_its_loop() {
 }
 
 #[test]
-fn the_spatial_four_bar_needs_its_motor_for_what_energy_it_gains() {
+fn energy_of_the_spatial_four_bar_equals_motor_work() {
     let description = model("spatial_four_bar").observing(&["energy", "-motor.force*A.angular_velocity"]);
     let runs = [1e-3, 5e-4].map(|h| nominal(&description.clone().step(h).rows_every(1e-3)));
     // Simpson's rule over rows 1 ms apart is exact enough; from 0.1 s on, when the reactions' start has faded.
@@ -50,7 +50,7 @@ fn the_spatial_four_bar_needs_its_motor_for_what_energy_it_gains() {
 
 /// Lengths a, b and twists α, β with a / sin α = b / sin β: the only loop of four revolute joints in space that moves.
 #[test]
-fn bennetts_linkage_moves_as_it_should() {
+fn bennetts_linkage_matches_its_closed_form() {
     let (alpha, beta) = (40_f64.to_radians(), 75_f64.to_radians());
     let a: f64 = 0.3;
     let b = a * beta.sin() / alpha.sin();
@@ -132,7 +132,7 @@ fn both(text: &str) -> [Subject; 2] {
 }
 
 #[test]
-fn a_mechanism_of_the_plane_moves_alike_in_space() {
+fn planar_mechanism_moves_equally_in_space() {
     let pair = both(
         "
 bodies:

@@ -146,7 +146,7 @@ simulation: {{ duration: 0.1, step: 1e-3 }}
 }
 
 #[test]
-fn over_constrained_mechanisms_are_told_with_the_joints() {
+fn over_constrained_mechanisms_are_reported_with_joints() {
     let message = refusal(
         "  drive: { motor: { on: A, from: 1, speed: 1 } }
   C: { fixed: [rod.c, slider] }
@@ -165,7 +165,7 @@ fn over_constrained_mechanisms_are_told_with_the_joints() {
 }
 
 #[test]
-fn a_spring_without_a_direction_is_told_by_its_name() {
+fn spring_without_a_direction_is_reported_by_name() {
     let spring = |free_length: &str| {
         format!(
             "
@@ -219,7 +219,7 @@ simulation: {{ duration: 0.01, step: 1e-3, output_step: 0.01, formulation: {form
 /// A guess of a coordinate that joints leave free is its start, named by the joint or by the body, in every
 /// formulation.
 #[test]
-fn a_guess_places_what_nothing_else_places() {
+fn guess_sets_otherwise_free_coordinates() {
     let start = |formulation: &str, guess: &str| {
         let bounds = nominal(&read(&format!(
             "
@@ -254,7 +254,7 @@ simulation: {{ duration: 0.01, step: 1e-3, formulation: {formulation} }}
 
 /// A ball on a floor may be turned in any way, but not lifted: its height is no choice.
 #[test]
-fn what_constraints_determine_is_not_left_open() {
+fn determined_coordinates_are_not_reported_as_open() {
     let shared = |name: &str, height: &str| {
         let text = format!(
             "

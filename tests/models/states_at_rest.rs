@@ -29,7 +29,7 @@ const DRIVE: &str = "drive: { torque: { on: elbow, value: 20 N*m*(target - elbow
 
 /// The integral holds the weight at the target: k ∫e dt = m g l cos(target).
 #[test]
-fn an_integral_rests_where_it_holds_the_weight() {
+fn integral_rests_at_the_value_that_carries_the_weight() {
     let bounds = run(&read(&arm(
         DRIVE,
         INTEGRAL,
@@ -113,7 +113,7 @@ fn a_motion_that_starts_at_an_equilibrium_stays_there() {
 
 /// It starts to move from there when something changes.
 #[test]
-fn a_step_of_the_target_moves_it_from_there() {
+fn step_of_the_target_ends_the_equilibrium() {
     let drive = DRIVE.replace("target", "(target + 0.05*(1 + sign(t - 0.5 s)))");
     let rest = "initial: equilibrium\nsimulation: { duration: 1, step: 1e-3, output_step: 0.1 }";
     let bounds = nominal(&read(&arm(&drive, INTEGRAL, "angle: elbow.angle, m: m", rest)));

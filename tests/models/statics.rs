@@ -86,7 +86,7 @@ fn a_hinged_bar_rests_where_the_torques_are_equal() {
 }
 
 #[test]
-fn the_guess_chooses_and_instability_is_told() {
+fn guess_selects_the_equilibrium_and_its_stability() {
     // Upright, with a spring too weak to hold it: π/2 is not quite it, since the spring pulls.
     let text = hinged("absolute", "0.5", 1.55);
     let bounds = nominal(&read(&text));
@@ -102,7 +102,7 @@ fn the_guess_chooses_and_instability_is_told() {
 }
 
 #[test]
-fn where_there_is_none_is_told_with_what_pushes() {
+fn missing_equilibrium_is_reported_with_its_force() {
     let text = "
 analysis: statics
 bodies: { ball: { mass: 2, inertia: 1 } }
@@ -118,7 +118,7 @@ outputs: { y: ball.y }
 }
 
 #[test]
-fn what_is_indifferent_is_named() {
+fn indifferent_coordinates_are_named() {
     let text = "
 analysis: statics
 bodies: { wheel: { mass: 2, inertia: 1 } }
@@ -152,7 +152,7 @@ fn a_motion_from_an_equilibrium_stays_there() {
 }
 
 #[test]
-fn a_closed_loop_in_space_and_in_the_plane_rests_alike() {
+fn closed_loop_rests_equally_in_plane_and_space() {
     // A plate on two links, pulled sideways by a spring: the same in both.
     let model = |space: &str| {
         format!(
@@ -196,7 +196,7 @@ outputs: {{ x: plate.x, y: plate.y, pull: pull.force }}
 }
 
 #[test]
-fn the_guides_example_is_what_it_says() {
+fn example_of_the_guide_has_its_values() {
     let bounds = run(&example("statics.yaml"));
     for (name, wanted) in [("angle", 45.531_592), ("spring", 9.175_084)] {
         close(value(&bounds, name), wanted, 1e-6);
@@ -206,7 +206,7 @@ fn the_guides_example_is_what_it_says() {
 }
 
 #[test]
-fn an_equilibrium_meets_requirements_with_their_closed_forms_margin() {
+fn margins_of_an_equilibrium_match_closed_forms() {
     let text = format!(
         "{}requirements: {{ high: angle >= -0.5 rad, low: {{ output: angle, max: -0.35 rad }} }}\n",
         hinged("joint", "{ value: 30, tolerance: 10% }", -0.3)
@@ -226,7 +226,7 @@ fn an_equilibrium_meets_requirements_with_their_closed_forms_margin() {
 /// Many parameters of a body at rest, or moved by motors, take as few simulations as those of a motion. The ends of a
 /// sum are the sums of ends; of the product, in logarithms, too.
 #[test]
-fn many_parameters_of_other_analyses_take_few_simulations() {
+fn many_parameters_take_few_simulations() {
     let count = 12;
     let names: Vec<String> = (0..count).map(|i| format!("p{i}")).collect();
     let parameters = names.iter().map(|name| format!("{name}: {{ value: 2, tolerance: 1% }}")).collect::<Vec<_>>();

@@ -115,7 +115,7 @@ fn every_law_has_its_mean_and_deviation() {
 }
 
 #[test]
-fn what_lies_outside_of_the_box_is_said() {
+fn share_outside_of_the_box_is_stated() {
     let found = summary(&at_rest(SUM, "a + b - c", "statistics: { distribution: normal }"), 2).statistics.unwrap();
     // Three laws with 0.27 % outside of ±3σ each; the surrogate reaches six.
     assert!((found.summary.outside - 3.0 * 2.699_796e-3).abs() < 1e-7 && found.summary.left_out < 1e-8);
@@ -196,7 +196,7 @@ fn direct_monte_carlo_of_the_simulation_agrees() {
 }
 
 #[test]
-fn statistics_lie_inside_the_bounds_and_are_the_same_bits_for_any_number_of_threads() {
+fn statistics_are_reproducible_and_within_the_bounds() {
     let description = read(CRANK);
     let result = description.study().threads(1).run().unwrap();
     let (bounds, first) = (result.bounds(), result.summary().clone());
@@ -214,7 +214,7 @@ fn statistics_lie_inside_the_bounds_and_are_the_same_bits_for_any_number_of_thre
 }
 
 #[test]
-fn who_asks_for_none_gets_the_same_bounds_and_no_statistics() {
+fn statistics_leave_the_bounds_unchanged() {
     let asked = read(CRANK);
     let laws = [
         ", distribution: { beta: { alpha: 2, beta: 3 } }",

@@ -25,7 +25,7 @@ fn the_error_falls_with_the_tolerance() {
 }
 
 #[test]
-fn a_tolerance_takes_the_steps_that_it_needs() {
+fn number_of_steps_grows_with_the_root_of_the_tolerance() {
     let description = model("slider_crank_one").duration(1.0);
     let steps = [1e-4, 1e-6].map(|tolerance| {
         let (_, summary) = run_methods(&description.clone().by_hht().tolerance(tolerance), Some(Vec::new()));

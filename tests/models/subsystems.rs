@@ -7,7 +7,7 @@ use crate::common::{Subject, read};
 use crate::pruning::{Sections, csv, difference, pendulum, run};
 
 #[test]
-fn subsystems_are_models_run_apart() {
+fn subsystems_match_separate_models() {
     let (a, b) = (pendulum("a", 0.0, ", tolerance: 2%"), pendulum("b", 0.3, ", tolerance: 1%"));
     let c = pendulum("c", 0.1, "");
     let both = a.with(&b).with(&c).model();
@@ -45,7 +45,7 @@ fn subsystems_are_models_run_apart() {
 
 /// An output that is no different, and makes the subsystems one.
 #[test]
-fn subsystems_simulated_together_give_the_same() {
+fn subsystems_simulated_together_have_the_same_bounds() {
     let (a, b) = (pendulum("a", 0.0, ", tolerance: 2%"), pendulum("b", 0.3, ", tolerance: 1%"));
     let mut apart = a.with(&b);
     // (The tight range of a polynomial has a margin, which more parameters make wider.)
@@ -151,7 +151,7 @@ fn locking(outputs: &str) -> Sections {
 }
 
 #[test]
-fn an_island_that_stops_leaves_the_others_alone() {
+fn stopped_subsystem_leaves_the_others_unchanged() {
     let free = pendulum("a", 0.0, ", tolerance: 2%");
     let run = |model: &Subject| model.finished(None);
     let mut both = locking("  rocker: rocker.angle\n").with(&free);
@@ -179,7 +179,7 @@ fn an_island_that_stops_leaves_the_others_alone() {
 
 /// The part of a box in which there is a motion is one for all outputs.
 #[test]
-fn with_parts_of_the_box_left_out_there_is_one_island() {
+fn omitted_parts_of_the_box_join_all_subsystems() {
     let mut slider = Sections {
         parameters: "  rod: { unit: m, interval: [0.35, 0.6] }\n".to_owned(),
         ground: ", H: [0, 0.4]".to_owned(),

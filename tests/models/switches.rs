@@ -79,7 +79,7 @@ fn no_sample_of_a_bouncing_ball_gains_energy() {
 /// flagged.
 #[test]
 #[ignore = "2 s"]
-fn a_sample_beyond_the_tolerance_flags_what_follows() {
+fn sample_beyond_the_tolerance_flags_later_rows() {
     let result = Model::from_yaml_str("brake", include_str!("../common/brake.yaml")).unwrap().study().run().unwrap();
     let held = result.outputs().next().unwrap();
     let band = held.bands().next().unwrap();
@@ -131,7 +131,7 @@ simulation: { duration: 1, tolerance: 1e-5, output_step: 0.5 }
 
 /// 50 µm of motion in a machine whose drawing is 1 m large.
 #[test]
-fn the_tolerance_is_relative_to_what_an_output_moves() {
+fn tolerance_is_relative_to_the_range_of_an_output() {
     let text = "
 parameters: { k: { value: 4e4, unit: N/m, tolerance: 1% } }
 bodies: { ground: { points: { far: [1, 0] } }, tip: { mass: 1, coordinates: [x] } }
@@ -200,7 +200,7 @@ fn flagged_from(bounds: &Bounds) -> Option<f64> {
 
 /// Between two samples lies a post that neither of them meets.
 #[test]
-fn a_post_that_no_sample_meets_flags_what_follows() {
+fn post_missed_by_all_samples_flags_later_rows() {
     let settings = "simulation: { duration: 0.8, step: 2e-4, output_step: 0.02 }\nbounds: { chebyshev: { order: 5 } }";
     // Met at 6.26 m/s, 0.4 s after the throw, by ± 0.06 m/s of ± 0.72 m/s.
     let (x, t) = (2.5, 2.5 / 6.26);
@@ -219,7 +219,7 @@ fn a_post_that_no_sample_meets_flags_what_follows() {
 /// A throw that all validation samples pass but one, which only grazes the post: between it and the next, throws are
 /// stopped.
 #[test]
-fn a_post_that_a_sample_only_grazes_flags_what_follows() {
+fn post_grazed_by_one_sample_flags_later_rows() {
     let text = "
 parameters: { v: { value: 9, unit: m/s, tolerance: 10% }, X: 10.8 m, Y: 4.753 m, R: 0.1 m, K: 9e3 N/m }
 bodies: { ball: { mass: 1 kg, coordinates: [x, y] } }
@@ -318,7 +318,7 @@ bounds: {{ chebyshev: {{ order: 8 }}, scan: {{ points: 15 }} }}
 
 /// An event that every sample meets, each at its own time, is not flagged.
 #[test]
-fn a_wall_that_all_samples_meet_flags_nothing() {
+fn wall_hit_by_all_samples_flags_no_row() {
     let text = "
 parameters: { v: { value: 3, unit: m/s, tolerance: 4% }, k: { value: 2000, unit: N/m, tolerance: 3% } }
 bodies: { cart: { mass: 1, coordinates: [x] } }

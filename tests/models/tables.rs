@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 
 /// A recording of a sine drives a mass as the sine itself does, but for the error of a spline through its samples.
 #[test]
-fn a_recording_drives_like_what_was_recorded() {
+fn recorded_signal_drives_like_the_original() {
     let folder = tempfile::tempdir().unwrap();
     let mut text = "# recorded\ntime;other;force\n".to_owned();
     for i in 0..=150 {

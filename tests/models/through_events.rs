@@ -93,7 +93,7 @@ fn widen(truths: &mut [[[f64; 2]; 2]], motion: Vec<[f64; 2]>) {
 }
 
 #[test]
-fn bounds_of_an_elastic_ball_are_those_of_its_closed_form() {
+fn bounds_of_an_elastic_ball_match_the_closed_form() {
     let (bounds, summary) = run_methods(&read(ELASTIC), None);
     assert!(integrated(&summary, "chebyshev").0);
     assert_eq!(integrated(&summary, "chebyshev").1, 16);
@@ -103,7 +103,7 @@ fn bounds_of_an_elastic_ball_are_those_of_its_closed_form() {
 }
 
 #[test]
-fn a_dissipating_contact_is_as_another_integrator_has_it() {
+fn dissipating_contact_matches_another_integrator() {
     let (bounds, summary) = run_methods(&read(BOUNCE), None);
     assert_eq!(integrated(&summary, "chebyshev").1, 16);
     let mut truths = vec![[[f64::INFINITY, f64::NEG_INFINITY]; 2]; bounds.times.len()];
@@ -121,7 +121,7 @@ fn a_dissipating_contact_is_as_another_integrator_has_it() {
 }
 
 #[test]
-fn a_tolerance_is_met_by_few_simulations() {
+fn tolerance_needs_few_simulations() {
     let text = ELASTIC.replace("bounds: { chebyshev: { order: 3 } }", "bounds: { tolerance: 1e-3 }");
     let (bounds, summary) = run_methods(&read(&text), None);
     assert!(integrated(&summary, "chebyshev").1 <= 25);
@@ -130,7 +130,7 @@ fn a_tolerance_is_met_by_few_simulations() {
 
 /// An event is before the end for some samples and behind it for others.
 #[test]
-fn an_event_beside_the_end_is_met() {
+fn event_near_the_end_is_followed() {
     let text = ELASTIC.replace("duration: 2", "duration: 0.46").replace("output_step: 0.02", "output_step: 0.01");
     let (bounds, summary) = run_methods(&read(&text), None);
     assert!(integrated(&summary, "chebyshev").0);
@@ -155,7 +155,7 @@ fn taylor_polynomials_go_through_events() {
 
 /// Polynomials of the second degree have a grid of 3⁸ = 6561 samples.
 #[test]
-fn scans_of_two_points_along_many_axes_are_not_told_by_more_samples() {
+fn scans_of_two_points_take_no_further_samples() {
     let text = ELASTIC
         .replace(
             "parameters: { g: 9.81 m/s^2,",
@@ -192,7 +192,7 @@ fn a_single_motion_takes_few_steps() {
 
 /// The test of HHT-I3 is in `scheme_between_events`.
 #[test]
-fn an_explicit_scheme_that_is_asked_for_is_taken() {
+fn requested_explicit_scheme_is_used() {
     let text = ELASTIC.replace("step: 1e-3", "tolerance: 1e-6, scheme: explicit");
     let (bounds, summary) = run_methods(&read(&text), None);
     assert!(integrated(&summary, "chebyshev").0);

@@ -105,7 +105,7 @@ fn a_divided_box_has_taylor_bounds() {
 
 /// Just below the top of the flight the instant of the hit is known to rounding of the height over a small velocity.
 #[test]
-fn jets_go_through_instants_that_are_known_to_rounding() {
+fn jets_pass_instants_known_to_rounding() {
     let (height, mass) = (0.4338, 4.53);
     let text = CEILING
         .replace("{ value: 5, unit: m/s, tolerance: 10% }", "{ interval: [2.97273, 2.98727] }")
@@ -127,7 +127,7 @@ fn jets_go_through_instants_that_are_known_to_rounding() {
 
 /// Differences of a scan's few samples say nothing about the motions between them.
 #[test]
-fn errors_of_scans_are_those_of_motions_between_events() {
+fn errors_of_scans_follow_motions_between_events() {
     assert_throws("scan: { points: 5 }", Method::Scan);
 }
 

@@ -119,7 +119,7 @@ bounds: {{ scan: {{ points: 61 }} }}
 /// Forces whose period is that of a step, and half of it; with the coordinate in the phase too.
 #[test]
 #[ignore = "2 s"]
-fn a_force_with_the_period_of_a_step_is_seen() {
+fn force_with_the_period_of_a_step_is_detected() {
     let mut findings = Findings::default();
     for (hertz, phase) in [(500.0, "0.4"), (1000.0, "1.1"), (1000.0, "1.1 + 1e-9*block.x")] {
         let (bounds, _) = oscillator(&format!("0.7*cos({TAU}*{hertz}*t + {phase})"), "", "step: 2e-3");
@@ -137,7 +137,7 @@ fn a_force_with_the_period_of_a_step_is_seen() {
 
 /// A position that is prescribed with a fast ripple: its acceleration determines the steps.
 #[test]
-fn a_ripple_of_a_prescribed_position_is_seen() {
+fn ripple_of_a_prescribed_position_is_detected() {
     let text = "
 parameters: { k: { value: 50, unit: N/m, tolerance: 2% } }
 bodies: { cart: { mass: 1, coordinates: [x] }, block: { mass: 2, coordinates: [x] } }
@@ -252,7 +252,7 @@ bounds: { chebyshev: { order: 6 }, scan: { points: 25 } }
 
 /// A narrow peak over the parameter between the samples: the steps' error at samples is none of its error.
 #[test]
-fn ends_that_no_sample_carries_have_the_error_of_the_coordinates() {
+fn ends_between_samples_have_the_error_of_coordinates() {
     let text = "
 parameters: { k: { value: 50, unit: N/m, tolerance: 2% } }
 bodies: { block: { mass: 2, coordinates: [x] } }

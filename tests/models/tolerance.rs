@@ -18,7 +18,7 @@ fn unresolved(bounds: &Bounds) -> usize {
 
 /// `bounds: { tolerance: … }` is enough: the true error is within it, and so is the one that is reported.
 #[test]
-fn the_tolerance_is_met() {
+fn true_error_is_within_the_tolerance() {
     let rows = reference("slider_crank/bounds_l1_1pct.csv");
     for tolerance in [1e-2, 1e-3, 1e-4] {
         let description = within(model("slider_crank_one").observing(&["slider.x"]), tolerance, 1000);
@@ -45,7 +45,7 @@ fn the_tolerance_is_met() {
 /// and 411 simulations, tested against 17 samples; relative to the course of one of them, they took degree 12, and 324
 /// simulations where each surrogate is tested against new samples.
 #[test]
-fn what_turns_takes_few_simulations() {
+fn turning_cranks_take_few_simulations() {
     let description = within(model("slider_crank").observing(&["slider.x"]), 1e-5, 400).scan(13);
     let (bounds, summary) = run_methods(&description, None);
     let chebyshev = summary.methods.iter().find(|method| method.method == "chebyshev").unwrap();
@@ -107,7 +107,7 @@ simulation: { duration: 0.8, tolerance: 1e-3, output_step: 0.01 }
 }
 
 #[test]
-fn a_budget_is_kept_and_what_it_leaves_undone_is_flagged() {
+fn budget_is_kept_and_unresolved_rows_are_flagged() {
     let description = within(model("slider_crank"), 1e-4, 60);
     let (bounds, summary) = run_methods(&description, None);
     let simulations: usize =
@@ -319,7 +319,7 @@ bounds: { chebyshev: { order: 3 } }
 
 /// Without uncertain parameters there is nothing to expand, but steps are chosen.
 #[test]
-fn nothing_uncertain_has_a_tolerance_too() {
+fn model_without_uncertainty_accepts_a_tolerance() {
     let bounds = run(&within(model("slider_crank_one").with("l1", 0.15), 1e-3, 100));
     let band = band(&bounds.outputs[0], Method::Chebyshev);
     assert_eq!((&band.lower, &band.upper), (&bounds.outputs[0].nominal, &bounds.outputs[0].nominal));
@@ -343,7 +343,7 @@ fn every_model_is_bounded_to_a_per_cent() {
 
 /// A bob between three equal springs stays at rest. Its rounding errors are no motion that bounds could miss.
 #[test]
-fn what_moves_by_rounding_alone_is_at_rest() {
+fn motion_of_rounding_errors_is_at_rest() {
     let spring = |name: &str| {
         format!("  {name}: {{ spring_damper: {{ between: [ground.{name}, bob], stiffness: k, free_length: 0.2 }} }}\n")
     };
@@ -366,7 +366,7 @@ fn what_moves_by_rounding_alone_is_at_rest() {
 /// Angular momentum about a spring's end is m v r at the start and stays: its changes are the steps' error, and no
 /// error is small relative to them. It takes no shorter steps than the position does.
 #[test]
-fn what_is_conserved_is_resolved_under_a_tolerance() {
+fn conserved_output_is_resolved_under_a_tolerance() {
     let text = "
 parameters: { k: 9 N/m ± 4%, v: 1.2 m/s ± 3% }
 bodies: { ground: { points: { O: [0, 0] } }, b: { mass: 1.5, inertia: 0.1, points: { P: [0, 0] } } }

@@ -190,7 +190,7 @@ outputs: {{ angle: hinge.angle, tip_x: a.tip.x, tip_z: a.tip.z, edge_x: b.edge.x
 }
 
 #[test]
-fn an_uncertain_mass_of_a_welded_link_is_that_of_a_file_with_it() {
+fn uncertain_mass_of_a_welded_link_matches_files() {
     let at = |mass: f64| {
         let files = welded(&link("b", mass, "0.2 0 0", [0.05, 0.04, 0.03]));
         nominal(&files.model(&format!("{GRAVITY}initial: {{ hinge.angle: 1 }}")))
@@ -210,7 +210,7 @@ fn an_uncertain_mass_of_a_welded_link_is_that_of_a_file_with_it() {
 }
 
 #[test]
-fn attributes_say_what_a_model_says() {
+fn attributes_match_keys_of_a_model() {
     let hinge = |own: &str| {
         joint("hinge", "revolute", "base", "a", &format!("<axis xyz='0 1 0'/><dynamics damping='0.1'{own}/>"))
     };
@@ -231,7 +231,7 @@ fn attributes_say_what_a_model_says() {
 }
 
 #[test]
-fn names_of_links_and_joints_stand_in_formulas() {
+fn formulas_may_contain_names_of_links_and_joints() {
     let files = welded("<link name='b'/>");
     let description = files.model(&format!(
         "{GRAVITY}outputs: {{ x: b.x, same: link.b.x, a: joint.hinge.angle, b: hinge.angle, m: link.a.mass + 0*a.x }}"
@@ -243,7 +243,7 @@ fn names_of_links_and_joints_stand_in_formulas() {
 }
 
 #[test]
-fn a_link_without_mass_at_the_end_is_left_out() {
+fn massless_link_at_the_end_is_omitted() {
     let files = robot(&[
         joint("hinge", "revolute", "base", "a", "<axis xyz='0 1 0'/>"),
         link("a", 1.0, "0.3 0 0", [0.1; 3]),
@@ -259,7 +259,7 @@ fn a_link_without_mass_at_the_end_is_left_out() {
 
 /// Numbers of urdf-rs, another reader of the format, for the same text.
 #[test]
-fn numbers_are_those_of_urdf_rs() {
+fn numbers_match_urdf_rs() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("models/arm.urdf");
     let other = urdf_rs::read_file(&path).unwrap();
     let ours = load(&path).study();

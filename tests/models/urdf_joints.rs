@@ -96,7 +96,7 @@ fn a_mimic_follows() {
 }
 
 #[test]
-fn friction_is_there_only_where_the_file_has_it() {
+fn friction_exists_only_if_the_file_has_it() {
     let parts = |details: &str| [joint("hinge", "revolute", "base", "a", details), link("a", 1.0, "0 0 0", [0.1; 3])];
     let frictionless = robot(&parts("")).model("");
     assert!(frictionless.study().description().effects.is_empty());

@@ -17,7 +17,7 @@ fn orders(found: &Verification, formulation: usize, scheme: usize) -> Vec<(Quant
 }
 
 #[test]
-fn a_slider_crank_has_the_orders_of_its_schemes_in_both_formulations() {
+fn slider_crank_has_theoretical_orders_in_both_formulations() {
     let found = of_model("slider_crank.yaml");
     assert!(found.is_verified(), "{found:?}");
     assert_eq!(found.formulations.len(), 2);
@@ -82,7 +82,7 @@ fn exchanges(effects: &str) -> Vec<Exchange> {
 }
 
 #[test]
-fn effects_keep_take_or_put_in_energy() {
+fn effects_conserve_dissipate_or_supply_energy() {
     let found = exchanges(
         "  weight: { gravity: { acceleration: [0, -9.81] } }
   spring: { spring_damper: { between: [ground, block.P], stiffness: 80, free_length: 0.1 } }
@@ -119,7 +119,7 @@ fn powers_are_balanced_in_every_formulation() {
 /// Symbolic derivatives, the Newton matrix with and without links, jets and adjoints are those of differences.
 #[test]
 #[ignore = "4 s"]
-fn derivatives_are_those_of_differences() {
+fn derivatives_match_differences() {
     for name in ["slider_crank.yaml", "humanoid.yaml", "coin.yaml", "held_arm.yaml", "quarter_car.yaml"] {
         let found = of_model(name);
         for formulation in &found.formulations {
@@ -141,7 +141,7 @@ fn derivatives_are_those_of_differences() {
 
 /// A stop that is met in the middle of the run: a part before it and one behind are verified, and neither has it.
 #[test]
-fn parts_before_and_behind_a_stop_are_verified() {
+fn parts_before_and_after_a_stop_are_verified() {
     let text = "model: stop\nbodies:\n  block: { mass: 1, coordinates: [x] }\njoints: { guide: { prismatic: { between: [ground, block], axis: x } } }\n\
                 effects:\n  end: { stop: { on: guide, upper: 0.5, impact: { stiffness: 1e3, dissipation: 0.2 } } }\n\
                 initial: { block.x: 0, block.vx: 1 }\noutputs: { x: block.x }\nsimulation: { duration: 1.2, step: 1e-3 }\n";

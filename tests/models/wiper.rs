@@ -47,7 +47,7 @@ fn kinetic_energy(t: f64) -> f64 {
 }
 
 #[test]
-fn the_wipers_pins_are_where_circles_meet() {
+fn pins_of_the_wiper_match_intersections_of_circles() {
     let names = ["left.angle", "right.angle"];
     let bounds = nominal(&model("wiper").observing(&names));
     for (side, name) in names.iter().enumerate() {
@@ -58,7 +58,7 @@ fn the_wipers_pins_are_where_circles_meet() {
 }
 
 #[test]
-fn the_wipers_motor_moves_masses_and_rubber() {
+fn power_of_the_wipers_motor_is_balanced() {
     let torque = |t: f64| {
         let glass: f64 = [0, 1].map(|side| 0.6 * rate(|t| arm(t, side), t).powi(2)).iter().sum();
         (glass + rate(kinetic_energy, t)) / SPEED

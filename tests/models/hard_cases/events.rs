@@ -51,7 +51,7 @@ simulation: { duration: 1, step: 1e-3, output_step: 0.1 }
 
 /// A ball that falls on a spring and rises again: parabolas and pieces of sines.
 #[test]
-fn a_stiff_stop_is_met_again_and_again() {
+fn repeated_impacts_on_a_stiff_stop_are_accurate() {
     let (stiffness, drop, g) = (1e8_f64, 0.1_f64, 9.81_f64);
     let text = format!(
         "bodies: {{ ball: {{ mass: 1, coordinates: [y] }} }}
@@ -127,7 +127,7 @@ simulation: { duration: 2, step: 1e-3, output_step: 0.01 }
 }
 
 #[test]
-fn friction_that_sticks_without_a_law_for_it_ends_with_a_diagnosis() {
+fn sticking_under_a_sign_law_ends_with_a_diagnosis() {
     // sign(v) has no value that holds the block: the force jumps from step to step, however short.
     let text = "bodies: { block: { mass: 1, coordinates: [x] } }
 effects:

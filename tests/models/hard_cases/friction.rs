@@ -49,7 +49,7 @@ fn sticks_and_slips(coulomb: f64, fading: f64, output_step: f64, rows: usize) ->
 /// It sticks until the spring pulls by F_s, then slides to and fro about F_k/k: with an amplitude of
 /// √((F_s − F_k)²/k² + (v/ω)²), where the excess fades at once.
 #[test]
-fn a_mass_on_a_belt_sticks_and_slips_as_far_as_it_should() {
+fn stick_slip_of_a_mass_on_a_belt_has_its_amplitude() {
     let excess = COULOMB * (BREAKAWAY - 1.0) / STIFFNESS;
     let highest = COULOMB / STIFFNESS + f64::hypot(excess, BELT / STIFFNESS.sqrt());
     let off = [1e-2, 1e-3, 1e-4].map(|fading| {

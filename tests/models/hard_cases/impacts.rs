@@ -250,7 +250,7 @@ fn a_slider_crank_with_clearance_converges() {
 }
 
 #[test]
-fn a_slider_crank_with_clearance_runs_on() {
+fn slider_crank_with_clearance_stays_accurate() {
     let bounds = nominal(&loose_pin("duration: 2, step: 1e-4, output_step: 1e-3"));
     let truth = loose_slider(1e-4, 1e-3, 2001);
     let off: Vec<f64> = curve(&bounds, "x").iter().zip(&truth).map(|(x, truth)| (x - truth).abs()).collect();
@@ -297,7 +297,7 @@ fn mean_errors(case: impl Fn(f64) -> (Subject, f64), steps: &[f64]) -> Vec<f64> 
 /// Forces that jump leave order one: a step that they fall into takes them for all of it or for none. Forces with a
 /// kink, as of a linear stop, leave order two.
 #[test]
-fn what_order_remains_at_events() {
+fn jumps_leave_order_one_and_kinks_order_two() {
     let jump = |phase: f64| {
         let at = 0.3 + 0.01 * phase;
         let text = format!(

@@ -92,7 +92,7 @@ fn a_change_point_is_passed_on_the_branch_of_the_motion() {
 }
 
 #[test]
-fn near_a_change_point_nothing_is_singular() {
+fn positions_near_a_change_point_are_regular() {
     // With a crank 1 % shorter than the rod, the slider comes near to O and turns back.
     let (bounds, summary) = run_methods(&read(&change_point(0.495)), Some(Vec::new()));
     assert!(summary.singular_configurations.is_empty(), "{:?}", summary.singular_configurations);

@@ -53,7 +53,7 @@ fn small_steps_lose_no_accuracy() {
 
 #[test]
 #[ignore = "20 s: a million steps of each length"]
-fn small_steps_lose_no_accuracy_in_a_million_of_them() {
+fn a_million_small_steps_lose_no_accuracy() {
     check_small_steps(1e6, 8);
 }
 
@@ -76,7 +76,7 @@ fn condition(simulator: &Simulator, h: f64) -> f64 {
 }
 
 #[test]
-fn the_newton_matrix_is_as_well_conditioned_with_any_step() {
+fn condition_of_the_newton_matrix_is_independent_of_steps() {
     // Andrews' mechanism is at its own scale with steps of a microsecond; bricard's matrix is singular as it stands.
     for (name, longest) in [
         ("pendulum", 3),
@@ -152,7 +152,7 @@ fn springy_exactly(stiffness: f64, steps: usize) -> [f64; 2] {
 }
 
 #[test]
-fn springs_of_any_stiffness_hold() {
+fn springs_of_any_stiffness_are_integrated() {
     for exponent in (0..=12).step_by(2) {
         let stiffness = 10.0_f64.powi(exponent);
         let bounds = nominal(&read(&springy(stiffness, 1.0)));
