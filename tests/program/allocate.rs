@@ -46,7 +46,7 @@ const SLOPES: [f64; 3] = [1.0, 2.0, 1.0];
 const BEFORE: [f64; 3] = [0.1e-3, 0.2e-3, 0.1e-3];
 
 #[test]
-fn worst_cases_of_a_stack_are_lagranges() {
+fn worst_cases_of_a_stack_match_lagrange() {
     let place = Place::new();
     let costs = [1.0, 4.0, 2.0];
     let with = |law: &str| costs.map(|cost| format!("cost: {{ reciprocal: {cost} }}{law}"));
@@ -89,7 +89,7 @@ fn worst_cases_of_a_stack_are_lagranges() {
 /// L/z)², t ~ ∛(c t⁰/s²).
 #[test]
 #[ignore = "2 s"]
-fn yields_of_a_stack_are_lagranges_to_a_thousandth() {
+fn yields_of_a_stack_match_lagrange_to_a_thousandth() {
     let place = Place::new();
     let costs = [1.0, 4.0, 2.0];
     let texts = costs.map(|cost| format!("cost: {{ reciprocal: {cost} }}, distribution: normal"));
@@ -113,7 +113,7 @@ fn yields_of_a_stack_are_lagranges_to_a_thousandth() {
 }
 
 #[test]
-fn one_factor_what_is_fixed_and_what_cannot_be() {
+fn common_factor_respects_fixed_tolerances_or_is_refused() {
     let place = Place::new();
     stack(&place, ["", "", ""]);
     place.run("allocate stack.yaml -o out", 0);
@@ -130,7 +130,7 @@ fn one_factor_what_is_fixed_and_what_cannot_be() {
 }
 
 #[test]
-fn grades_of_iso_286_are_those_of_brute_force() {
+fn grades_of_iso_286_match_brute_force() {
     let place = Place::new();
     let costs = [("IT9", 2.0), ("IT11", 1.0), ("IT7", 6.0)];
     let text = "cost: { grades: { IT9: 2, IT11: 1, IT7: 6 } }";
@@ -208,7 +208,7 @@ bounds: {{ chebyshev: {{ order: 2 }} }}
 }
 
 #[test]
-fn a_four_bars_tolerances_follow_from_its_sensitivities() {
+fn tolerances_of_a_four_bar_follow_from_sensitivities() {
     let place = Place::new();
     bars(&place);
     place.run("allocate bars.yaml -o out", 0);
@@ -237,7 +237,7 @@ fn a_four_bars_tolerances_follow_from_its_sensitivities() {
 
 /// Direct Monte Carlo of the closed form, with the uniform laws that hold where nothing else is said.
 #[test]
-fn a_four_bars_yield_is_that_of_its_closed_form() {
+fn yield_of_a_four_bar_matches_the_closed_form() {
     let place = Place::new();
     bars(&place);
     let (printed, _) = place.run("allocate bars.yaml --yield 99% -o out", 0);
@@ -275,7 +275,7 @@ fn the_guides_example_is_run() {
 /// Confirmed tolerances survive an interruption of further rounds, which search for cheaper ones.
 #[test]
 #[ignore = "2 s"]
-fn an_interruption_keeps_what_is_confirmed() {
+fn interruption_keeps_confirmed_tolerances() {
     let place = Place::new();
     let law = |cost: u32| format!("cost: {{ reciprocal: {cost} }}, distribution: normal");
     stack(&place, [&law(1), &law(4), &law(2)]);

@@ -145,7 +145,7 @@ fn check(question: &str, cell: &str, analysis: &Analysis, column: usize) {
 
 #[test]
 #[ignore = "4 s"]
-fn every_question_is_answered_as_the_table_says() {
+fn answers_to_all_questions_match_the_table() {
     let table = table();
     assert_eq!(table.len(), 7);
     for row in &table {
@@ -160,7 +160,7 @@ fn every_question_is_answered_as_the_table_says() {
 
 /// Two lags of a filter have time constants and no frequency: the message names the existing results.
 #[test]
-fn results_that_an_analysis_does_not_find_are_refused_with_those_that_it_does() {
+fn refusal_of_a_missing_result_names_existing_results() {
     let place = Place::new();
     let analysis = Analysis {
         limited: "mode3.frequency >= 1",

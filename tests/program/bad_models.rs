@@ -14,7 +14,7 @@ use std::sync::LazyLock;
 use mbint::{Diagnostics, Error, Model};
 use proptest::prelude::*;
 
-use crate::place::{Place, told};
+use crate::place::{Place, diagnostics_of};
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -75,7 +75,7 @@ fn bad_models() -> Vec<PathBuf> {
 }
 
 #[test]
-fn bad_models_are_reported_in_their_places() {
+fn bad_models_are_reported_with_positions() {
     let update = std::env::var_os("MBINT_UPDATE").is_some();
     let mut failures = String::new();
     let paths = bad_models();
@@ -83,7 +83,7 @@ fn bad_models_are_reported_in_their_places() {
     for path in paths {
         let text = fs::read_to_string(&path).unwrap();
         let expected: Vec<&str> = text.lines().take_while(|line| is_expectation(line)).collect();
-        let got = commented(&path, found(&told(Model::from_file(&path))));
+        let got = commented(&path, found(&diagnostics_of(Model::from_file(&path))));
         if got == expected {
             assert!(!expected.is_empty(), "{} is not bad", path.display());
             continue;
@@ -93,7 +93,7 @@ fn bad_models_are_reported_in_their_places() {
             let with = |lines: &[String]| format!("{}\n{body}", lines.join("\n"));
             // The locations move down by the lines that are written: a second pass gives the final ones.
             fs::write(&path, with(&got)).unwrap();
-            let moved = commented(&path, found(&told(Model::from_file(&path))));
+            let moved = commented(&path, found(&diagnostics_of(Model::from_file(&path))));
             fs::write(&path, with(&moved)).unwrap();
         }
         failures +=
@@ -106,7 +106,7 @@ fn bad_models_are_reported_in_their_places() {
 #[ignore = "2 s"]
 fn every_bad_model_renders() {
     for path in bad_models() {
-        let diagnostics = told(Model::from_file(&path));
+        let diagnostics = diagnostics_of(Model::from_file(&path));
         for colour in [true, false] {
             let text = diagnostics.render(colour);
             assert!(!text.is_empty());
@@ -132,7 +132,7 @@ error[E0401]: unknown body `crnk`
 }
 
 #[test]
-fn both_places_of_a_duplicate_are_shown() {
+fn both_positions_of_a_duplicate_are_shown() {
     let text = "parameters:\n  a: 1\n  a: 2\n";
     let rendered = wrong("x.yaml", text).render(false);
     assert!(rendered.contains("first here") && rendered.contains("again here"), "{rendered}");
@@ -170,7 +170,7 @@ fn error_of(path: &Path) -> String {
 }
 
 #[test]
-fn files_that_are_no_models_are_refused() {
+fn files_without_a_model_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let file = |name: &str, bytes: &[u8]| {
         let path = folder.path().join(name);
@@ -248,7 +248,7 @@ fn a_slip_of_several_bodies_is_shown_once() {
 }
 
 #[test]
-fn overrides_are_reported_where_they_stand() {
+fn faulty_overrides_are_reported_with_positions() {
     // Without a value there is nothing that Rust could set.
     let model = root().join("models/slider_crank.yaml");
     let (_, errors) = Place::new().run(&format!("check {} --set l1", model.display()), 2);
@@ -289,7 +289,7 @@ fn sound(which: usize) -> String {
 fn never_panics(text: &str) {
     let model = Model::from_yaml_str("x.yaml", text);
     let has_errors = model.is_err();
-    let diagnostics = told(model);
+    let diagnostics = diagnostics_of(model);
     let rendered = diagnostics.render(false);
     assert_eq!(has_errors, diagnostics.has_errors());
     assert_eq!(rendered.is_empty(), diagnostics.is_empty());
@@ -357,6 +357,6 @@ proptest! {
     #[test]
     fn random_overrides_do_not_panic(text in "l1=?[-+±%0-9a-z. \\[\\],=*/^()]{0,20}") {
         let (name, value) = text.split_once('=').unwrap_or((&text, ""));
-        told(Model::from_yaml_str("x.yaml", &slider_crank()).unwrap().with(name, value)).render(false);
+        diagnostics_of(Model::from_yaml_str("x.yaml", &slider_crank()).unwrap().with(name, value)).render(false);
     }
 }

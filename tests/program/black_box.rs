@@ -63,7 +63,7 @@ fn column(text: &str, name: &str) -> Vec<f64> {
 }
 
 #[test]
-fn bounds_are_those_of_the_closed_form() {
+fn bounds_match_the_closed_form() {
     let more = "outputs: { x: x, stretch: k * x, at_end: { value: x, at: 0.3 } }
 requirements: { near: x <= 1001 mm }
 bounds: { chebyshev: { order: 5 }, scan: { points: 5 } }";
@@ -93,7 +93,7 @@ bounds: { chebyshev: { order: 5 }, scan: { points: 5 } }";
 
 #[test]
 #[ignore = "30 s"]
-fn a_sample_that_fails_is_one_sample() {
+fn failed_sample_affects_no_other_sample() {
     for (mode, expected) in [
         ("crash", "the program ended (exit status: 1) without an answer; its last words: diverged at k = 210.0"),
         ("hang", "the program did not answer within 2 s, and was ended"),
@@ -119,7 +119,7 @@ fn a_sample_that_fails_is_one_sample() {
 
 /// A program with a mistake in it fails for every point: only the nominal one is requested, and tried again once.
 #[test]
-fn a_program_that_always_fails_is_asked_for_one_point() {
+fn failing_program_is_called_for_one_point_only() {
     let place = place("right", "requirements: { near: x <= 1001 mm }\nbounds: { tolerance: 1e-3 }");
     let wrong = "import sys\nopen('asked', 'a').write('x')\nsys.stdin.readline()\nprint(math.pi)\n";
     fs::write(place.path().join("spring.py"), wrong).unwrap();
@@ -142,7 +142,7 @@ fn samples_without_an_answer_are_not_numbers() {
 }
 
 #[test]
-fn a_program_that_is_not_there_is_said_at_once() {
+fn missing_program_is_reported_at_once() {
     let place = place("right", "");
     fs::write(place.path().join("spring.yaml"), model("right", "").replace("python3", "no-such-program")).unwrap();
     let (_, messages) = place.run("run spring.yaml -o out", 2);
@@ -153,7 +153,7 @@ fn a_program_that_is_not_there_is_said_at_once() {
 }
 
 #[test]
-fn what_needs_a_mechanism_is_refused() {
+fn commands_that_need_a_mechanism_are_refused() {
     let place = place("right", "");
     for command in ["show", "explain", "gradient", "cost"] {
         let (_, messages) = place.run(&format!("{command} spring.yaml"), 2);
@@ -172,7 +172,7 @@ fn what_needs_a_mechanism_is_refused() {
 
 /// The shipped slider crank, and the same behind a black box that is mbint itself.
 #[test]
-fn a_box_that_is_mbint_has_the_bounds_of_its_model() {
+fn mbint_as_program_gives_the_bounds_of_its_model() {
     let place = Place::new();
     let own = fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/models/slider_crank.yaml")).unwrap();
     let inner = own.split("bounds:").next().unwrap().replace("# yaml-language-server", "#");
@@ -311,7 +311,7 @@ bounds: { chebyshev: { order: 2 } }
 
 /// The answers of a script are stored with `--store`, and asked anew if the script has changed.
 #[test]
-fn stored_answers_are_those_of_the_script() {
+fn stored_answers_follow_changes_of_the_script() {
     let place = place("right", "bounds: { chebyshev: { order: 3 } }");
     let run = |folder: &str| {
         place.run(&format!("run spring.yaml -o {folder} --store kept"), 0);
@@ -325,7 +325,7 @@ fn stored_answers_are_those_of_the_script() {
 }
 
 #[test]
-fn studies_of_shards_are_those_of_a_run() {
+fn studies_by_shards_match_a_run() {
     let place = place("right", "bounds: { chebyshev: { order: 3 } }");
     place.run("run spring.yaml -o alone", 0);
     place.run("plan spring.yaml -o study --at-once 0", 0);

@@ -128,7 +128,7 @@ fn certificates_are_proven_again_and_changed_ones_are_refused() {
 }
 
 #[test]
-fn certificates_are_of_one_model() {
+fn certificates_of_other_models_are_refused() {
     let (place, lines) = certified(PENDULUM);
     let other = PENDULUM.replace("g: 9.81", "g: 9.80");
     fs::write(place.path().join("pendulum.yaml"), &other).unwrap();
@@ -143,7 +143,7 @@ fn certificates_are_of_one_model() {
 
 /// The certificate has the tables' cubics: with others it does not hold, and it is not of the model.
 #[test]
-fn tables_stand_in_a_certificate() {
+fn certificates_contain_tables() {
     let place = Place::new();
     let model = "
 model: table

@@ -29,7 +29,7 @@ fn begins(model: &Model) -> Result<(), Error> {
 
 #[test]
 #[ignore = "5 s"]
-fn both_refuse_the_same_models_with_the_same_words() {
+fn check_and_run_refuse_the_same_models_equally() {
     let place = Place::new();
     let mut refused = 0;
     for path in files("tests/bad_models") {
@@ -51,7 +51,7 @@ fn both_refuse_the_same_models_with_the_same_words() {
 
 #[test]
 #[ignore = "5 s"]
-fn both_accept_the_same_models() {
+fn check_and_run_accept_the_same_models() {
     for path in files("models").into_iter().chain(files("docs/examples")) {
         let shown = path.display();
         let model = Model::from_file(&path).unwrap_or_else(|error| panic!("{error}"));
@@ -63,7 +63,7 @@ fn both_accept_the_same_models() {
 /// Nothing that moves, nothing that is uncertain, one row, no output: through every analysis, by every command that
 /// simulates. Each ends as documented, with a result or with a message, and with no error of the program.
 #[test]
-fn sizes_of_nothing_pass_every_stage() {
+fn empty_models_pass_every_stage() {
     let place = Place::new();
     let bodies = [
         "bodies: { b: { mass: m, inertia: 1 } }\njoints: { w: { fixed: [ground, b] } }\n",

@@ -6,7 +6,7 @@ use std::process::Stdio;
 use super::place::Place;
 
 #[test]
-fn help_tells_of_every_command_and_of_the_exit_status() {
+fn help_lists_every_command_and_exit_status() {
     let place = Place::new();
     let (help, errors) = place.run("--help", 0);
     for text in [
@@ -93,7 +93,7 @@ fn a_missing_model_ends_with_2_and_nothing_is_run() {
 }
 
 #[test]
-fn the_new_model_is_right_and_is_never_written_over_another() {
+fn new_model_is_valid_and_never_overwrites_a_file() {
     let place = Place::new();
     let (output, _) = place.run("new pendulum", 0);
     assert!(output.starts_with("pendulum.yaml\nnext: mbint run pendulum.yaml\n"), "{output}");
@@ -111,7 +111,7 @@ fn the_new_model_is_right_and_is_never_written_over_another() {
 }
 
 #[test]
-fn a_run_writes_its_files_and_tells_where() {
+fn run_writes_its_files_and_prints_their_folder() {
     let place = Place::new();
     place.model("crank");
     let (output, errors) = place.run("run crank.yaml --timings", 0);
@@ -138,7 +138,7 @@ fn a_run_writes_its_files_and_tells_where() {
 }
 
 #[test]
-fn bounds_that_miss_their_tolerance_have_a_status_of_their_own() {
+fn unmet_tolerance_has_a_separate_exit_status() {
     let place = Place::new();
     place.model("crank");
     let path = place.path().join("crank.yaml");
@@ -174,7 +174,7 @@ fn several_models_have_a_folder_each() {
 }
 
 #[test]
-fn a_file_where_the_folder_should_be_is_reported_before_the_run() {
+fn file_in_place_of_the_folder_is_reported_before_the_run() {
     let place = Place::new();
     place.model("crank");
     fs::write(place.path().join("taken"), "mine").unwrap();
@@ -187,7 +187,7 @@ fn a_file_where_the_folder_should_be_is_reported_before_the_run() {
 }
 
 #[test]
-fn json_is_an_object_a_model() {
+fn json_has_one_object_per_model() {
     let place = Place::new();
     place.model("crank");
     let (output, errors) = place.run("check --format json crank.yaml missing.yaml", 2);

@@ -15,7 +15,7 @@ use mbint::inner::syntax::{Code, MODEL};
 use rayon::prelude::*;
 
 use crate::book::expect_page;
-use crate::place::{Place, told};
+use crate::place::{Place, diagnostics_of};
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -79,7 +79,7 @@ impl Tried {
 
     /// Codes with their lines, 0 if there is no line; and the text of all messages.
     fn read(&self) -> (Vec<(Code, usize)>, String) {
-        let diagnostics = told(Model::from_file(&self.main));
+        let diagnostics = diagnostics_of(Model::from_file(&self.main));
         let found = diagnostics.records().iter().map(|record| (record.code, record.line.unwrap_or(0))).collect();
         (found, diagnostics.render(false))
     }
@@ -156,13 +156,13 @@ fn every_page_has_its_parts() {
 }
 
 #[test]
-fn examples_that_are_read_give_their_codes_and_cures_do_not() {
+fn read_examples_give_their_codes_and_cures_do_not() {
     expect_right(Code::ALL.iter().copied().filter(|code| !has_commands(code)));
 }
 
 #[test]
 #[cfg(unix)]
-fn examples_that_are_run_give_their_codes_and_cures_do_not() {
+fn run_examples_give_their_codes_and_cures_do_not() {
     expect_right(Code::ALL.iter().copied().filter(has_commands));
 }
 

@@ -59,7 +59,7 @@ fn assert_well_formed(svg: &str) {
 
 #[test]
 #[ignore = "2 s"]
-fn errors_fall_as_they_must_and_have_the_right_sign() {
+fn errors_fall_with_effort_and_have_the_right_sign() {
     let place = tempfile::tempdir().unwrap();
     fs::write(place.path().join("oscillator.yaml"), OSCILLATOR).unwrap();
     let output = Command::new(assert_cmd::cargo::cargo_bin!("mbint"))
@@ -210,7 +210,7 @@ fn a_study_keeps_its_budget() {
 /// Interrupted half way, a study keeps its measurements, of whole runs only.
 #[test]
 #[ignore = "2 s"]
-fn what_is_measured_before_an_interruption_is_kept() {
+fn interruption_keeps_finished_measurements() {
     let model = Model::from_yaml_str("oscillator", OSCILLATOR).unwrap();
     let reached = Mutex::new(0.0_f64);
     let study = |until: f64| {

@@ -49,7 +49,7 @@ fn margin() -> f64 {
 }
 
 #[test]
-fn margins_and_violations_are_in_the_unit_of_what_is_limited() {
+fn margins_and_violations_have_the_unit_of_the_output() {
     let place = Place::new();
     fs::write(place.path().join("fall.yaml"), FALL).unwrap();
     let (output, _) = place.run("run fall.yaml --junit verdicts.xml", 4);

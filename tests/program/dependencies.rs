@@ -55,7 +55,7 @@ fn licences_of_all_dependencies_are_allowed() {
 
 /// Its kernels fuse where the processor can, and give other bits there; nalgebra's feature `std` brings it.
 #[test]
-fn no_dependency_multiplies_matrices_by_kernels_that_fuse() {
+fn no_dependency_has_fused_matrix_kernels() {
     let lock = fs::read_to_string(Path::new(ROOT).join("Cargo.lock")).unwrap();
     assert!(lock.contains("name = \"nalgebra\"") && !lock.contains("matrixmultiply"));
 }

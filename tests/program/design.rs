@@ -106,7 +106,7 @@ objective: { least: size }
 }
 
 #[test]
-fn the_nearest_values_are_told_where_none_will_do() {
+fn nearest_values_are_reported_if_none_are_feasible() {
     let place = place(&PLATE.replace("min: 1 m^2", "min: 4 m^2"));
     let (printed, error) = place.run("design plate.yaml -o out", 4);
     assert!(error.contains("no values within the ranges meet `large`: the nearest miss it by"), "{error}");
@@ -117,13 +117,13 @@ fn the_nearest_values_are_told_where_none_will_do() {
 
 #[test]
 #[ignore = "2 s"]
-fn a_yield_is_asked_for() {
+fn design_accepts_a_required_yield() {
     let (printed, _) = place(PLATE).run("design plate.yaml -o out --yield 95%", 0);
     assert!(printed.contains("for 95 % of the production") && printed.contains("95 % within"), "{printed}");
 }
 
 #[test]
-fn a_model_without_a_design_is_told_what_it_lacks() {
+fn model_without_a_design_is_refused() {
     let model: String = PLATE
         .lines()
         .filter(|line| !line.starts_with("design") && !line.starts_with("objective"))

@@ -44,7 +44,7 @@ fn the_examples_are_right() {
 
 /// Every effect has its example in the reference; the guide shows those that have a picture.
 #[test]
-fn every_picture_is_shown_beside_an_example() {
+fn every_picture_is_shown_next_to_an_example() {
     let pictures = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/images/effects");
     let names = std::fs::read_dir(pictures).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
     for name in names {

@@ -115,7 +115,7 @@ fn new_makes_the_folders_of_its_model() {
 }
 
 #[test]
-fn what_older_scenes_left_goes() {
+fn results_of_removed_scenes_are_deleted() {
     let place = Place::new();
     let model =
         |text: &str| fs::write(place.path().join("slides.yaml"), SLIDES.replace("FORMULATION", "") + text).unwrap();
@@ -146,7 +146,7 @@ fn what_older_scenes_left_goes() {
 
 /// `printf abc | sha256sum`, of the standard's own example, is `ba7816bf…`: a model's hash is that of its bytes.
 #[test]
-fn results_say_what_they_are_of() {
+fn results_state_their_provenance() {
     let place = Place::new();
     fs::write(place.path().join("slides.yaml"), SLIDES.replace("FORMULATION", "")).unwrap();
     place.run("run slides.yaml --set m=1.5 --method scan -o one", 0);
@@ -179,7 +179,7 @@ fn results_say_what_they_are_of() {
 }
 
 #[test]
-fn what_is_refused_does_not_end_the_scenes_after_it() {
+fn refused_scene_does_not_stop_later_scenes() {
     let place = Place::new();
     let scenes =
         "scenes: { one: {}, large: { bounds: { scan: { points: 200 } } }, last: { effects: { other: null } } }\n"
@@ -192,7 +192,7 @@ fn what_is_refused_does_not_end_the_scenes_after_it() {
 }
 
 #[test]
-fn check_says_what_makes_a_model_spatial() {
+fn check_reports_why_a_model_is_spatial() {
     let place = Place::new();
     let text = "bodies: { bar: { mass: 1, inertia: 0.1, points: { A: [-0.5, 0] } } }
 joints: { pivot: { revolute: [ground, bar.A] } }
@@ -215,7 +215,7 @@ simulation: { duration: 1, step: 1e-3 }
 }
 
 #[test]
-fn what_is_not_used_is_one_line() {
+fn unused_parts_are_listed_in_one_line() {
     let place = Place::new();
     let mut text = "bodies:\n  a: { mass: 1, coordinates: [x] }\n".to_owned();
     (0..30).for_each(|i| text += &format!("  b{i}: {{ mass: 1, inertia: 1 }}\n"));
@@ -232,7 +232,7 @@ fn what_is_not_used_is_one_line() {
 
 /// Seconds are known where the steps are chosen, too.
 #[test]
-fn a_refused_run_says_how_long_it_takes() {
+fn refused_run_reports_its_duration() {
     let place = Place::new();
     let text = SLIDES.replace("FORMULATION", "").replace("scan: { points: 2 }", "scan: { points: 300 }");
     for (steps, written) in [("fixed", text.clone()), ("chosen", text.replace("step: 5e-3,", "tolerance: 1e-6,"))] {

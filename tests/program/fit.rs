@@ -74,7 +74,7 @@ fn tables_of_spreadsheets_are_the_same() {
 }
 
 #[test]
-fn rows_that_nothing_explains_are_named() {
+fn unexplained_rows_are_named() {
     let place = place(&TABLE.replace("500, 101", "500, 2000"));
     let (_, error) = place.run("fit line.yaml data.csv -o out", 4);
     let named = "line 5 (height at t = 0.5 s) alone: missed by 498 mm beyond its noise";
@@ -83,7 +83,7 @@ fn rows_that_nothing_explains_are_named() {
 }
 
 #[test]
-fn tables_that_cannot_be_used_say_where_and_why() {
+fn unusable_tables_are_reported_with_positions() {
     let cases = [
         ("", "data.csv: the table is empty: it needs a heading, as `time, x`, and rows"),
         ("time, height\n", "data.csv: the table has no measured values below its heading"),

@@ -104,7 +104,7 @@ fn uri(path: &Path) -> String {
 }
 
 #[test]
-fn a_session_ends_as_the_editor_says() {
+fn session_ends_on_request_of_the_editor() {
     let mut session = Session::new();
     assert_eq!(session.ask("nothing/known", json!({}))["error"]["code"], -32601);
     assert_eq!(session.ask("textDocument/hover", json!({ "position": 1 }))["error"]["code"], -32602);
@@ -116,7 +116,7 @@ fn a_session_ends_as_the_editor_says() {
 
 /// Texts that are cut, joined and changed at random are answered, and nothing in the server panics.
 #[test]
-fn half_typed_texts_are_answered() {
+fn requests_on_half_typed_texts_are_answered() {
     let mut session = Session::new();
     let mut state = 7_u64;
     let mut random = move |below: usize| {

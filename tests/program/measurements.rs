@@ -3,7 +3,7 @@
 use crate::measured::Case;
 
 #[test]
-fn figures_beyond_their_limits_are_told() {
+fn figures_beyond_their_limits_are_reported() {
     let within =
         Case::new("none", "a").at_most("error, m", 1e-7, 1e-6).at_least("order", 1.95, 1.9).order("order", 2.09, 2.0);
     assert_eq!(within.figure("step, s", f64::NAN).share("missed", 3, 4, Some(0.1)).write(), "");

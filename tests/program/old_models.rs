@@ -7,7 +7,7 @@ use std::path::Path;
 use super::place::Place;
 
 #[test]
-fn models_of_before_are_run() {
+fn models_of_older_versions_are_accepted() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/old_models/1.0");
     let place = Place::new();
     let mut models: Vec<_> = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
@@ -23,7 +23,7 @@ fn models_of_before_are_run() {
 }
 
 #[test]
-fn a_model_of_before_has_its_bounds() {
+fn model_of_an_older_version_keeps_its_bounds() {
     let place = Place::new();
     let model = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/old_models/1.0/slider_crank.yaml");
     fs::copy(model, place.path().join("model.yaml")).unwrap();

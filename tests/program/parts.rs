@@ -6,7 +6,7 @@ use std::path::Path;
 use mbint::results::{Bounds, Summary, Verdict};
 use mbint::{Error, Model};
 
-use super::place::{Place, told};
+use super::place::{Place, diagnostics_of};
 
 fn read(text: &str, set: &[&str]) -> Result<Model, Error> {
     set.iter().try_fold(Model::from_yaml_str("test.yaml", text)?, |model, setting| {
@@ -72,7 +72,7 @@ bounds: { chebyshev: { order: 3 }, scan: { points: 5 } }
 ";
 
 #[test]
-fn what_is_repeated_gives_the_bytes_of_what_is_written_out() {
+fn repetition_gives_the_bytes_of_written_out_models() {
     let place = Place::new();
     let bounds = |text: &str| {
         fs::write(place.path().join("links.yaml"), text).unwrap();
@@ -85,10 +85,10 @@ fn what_is_repeated_gives_the_bytes_of_what_is_written_out() {
 }
 
 #[test]
-fn the_command_line_says_how_often() {
+fn command_line_sets_the_number_of_repetitions() {
     let counts = |set: &[&str]| good(LINKS, set).study().description().bodies.len() - 1;
     assert_eq!((counts(&[]), counts(&["N=7"]), counts(&["N=2"])), (3, 7, 2));
-    let bad = told(read(LINKS, &["N=2.5"])).records();
+    let bad = diagnostics_of(read(LINKS, &["N=2.5"])).records();
     assert_eq!(bad[0].message, "`N` is not a whole number");
     assert_eq!((bad[0].line, bad[0].column), (Some(5), Some(31)));
 }
@@ -122,7 +122,7 @@ fn interval(model: &Model, name: &str) -> Option<[f64; 3]> {
 }
 
 #[test]
-fn every_instance_has_tolerances_of_its_own_but_for_those_that_are_shared() {
+fn instances_have_separate_tolerances_unless_shared() {
     let model = good(PAIR, &[]);
     let names: Vec<&str> = model.uncertain().map(|(name, _)| name).collect();
     let expected = ["load", "hanger.gravity", "one.mass", "one.rate", "two.mass", "two.rate", "three.rate"];
@@ -142,7 +142,7 @@ fn every_instance_has_tolerances_of_its_own_but_for_those_that_are_shared() {
 }
 
 #[test]
-fn settings_name_an_instance_or_all_of_them() {
+fn settings_apply_to_one_or_all_instances() {
     let rates = |set: &[&str]| {
         let model = good(PAIR, set);
         ["one.rate", "two.rate", "three.rate"].map(|name| interval(&model, name).map(|[nominal, ..]| nominal))
@@ -152,7 +152,7 @@ fn settings_name_an_instance_or_all_of_them() {
     assert_eq!(rates(&["hanger.rate=310±1%"]), [Some(310.0), None, Some(310.0)]);
     assert_eq!(interval(&good(PAIR, &["hanger.gravity=9.8±0.1"]), "hanger.gravity").unwrap()[0], 9.8);
     assert_eq!(interval(&good(PAIR, &["one.gravity=9.7±0.1"]), "one.gravity").unwrap()[0], 9.7);
-    let wrong = told(read(PAIR, &["one.rat=3"])).records();
+    let wrong = diagnostics_of(read(PAIR, &["one.rat=3"])).records();
     assert_eq!(wrong[0].message, "unknown parameter `one.rat`");
     let scenes = format!("{PAIR}scenes: {{ stiff: {{ parameters: {{ one.rate: 500 ± 1%, hanger.gravity: 9.7 }} }} }}");
     let model = good(&scenes, &[]);
@@ -163,7 +163,7 @@ fn settings_name_an_instance_or_all_of_them() {
 }
 
 #[test]
-fn an_instance_is_what_is_written_out() {
+fn instance_matches_the_written_out_model() {
     let (bounds, _) = run(&good(PAIR, &[]));
     let alone = "
 parameters: { m: 2 kg ± 5%, k: 300 N/m ± 3%, g: 9.81 m/s^2 ± 1% }
@@ -188,7 +188,7 @@ bounds: { chebyshev: { order: 3 }, scan: { points: 3 } }
 }
 
 #[test]
-fn each_of_four_quarter_cars_is_one() {
+fn each_of_four_quarter_cars_matches_a_single_one() {
     let four = Model::from_file(root().join("models/quarter_cars.yaml")).unwrap();
     let text = fs::read_to_string(root().join("models/quarter_car.yaml")).unwrap();
     let text = format!(
@@ -216,7 +216,7 @@ fn each_of_four_quarter_cars_is_one() {
 #[test]
 fn an_error_names_file_instance_and_definition() {
     let path = root().join("tests/bad_models/parts-inside.yaml");
-    let report = told(Model::from_file(&path));
+    let report = diagnostics_of(Model::from_file(&path));
     let records = report.records();
     let first = records.iter().find(|record| record.message == "instance `right` has no `mas`").unwrap();
     assert!(first.file.ends_with("parts/arm.yaml"), "{}", first.file);
@@ -260,7 +260,7 @@ bounds: { scan: { points: 2 } }
 }
 
 #[test]
-fn scenes_leave_out_by_patterns() {
+fn scenes_omit_parts_by_patterns() {
     let text = format!(
         "{LINKS}scenes:\n  free: {{ without: [rub.*], outputs: {{ lost: link_1.y }} }}\n  bare: {{ without: [rub], outputs: {{ lost: link_1.y }} }}\n  first: {{ extends: bare, with: [\"*.pin_1\"] }}\n"
     );
@@ -268,13 +268,13 @@ fn scenes_leave_out_by_patterns() {
     assert_eq!(model.warnings().records(), [], "{}", model.warnings());
     let effects = |scene: &str| model.clone().scene(scene).unwrap().study().explain().unwrap().effects.len();
     assert_eq!((effects("free"), effects("bare"), effects("first")), (1, 1, 2));
-    let wrong = told(read(&text.replace("rub.*", "rab.*"), &[])).records();
+    let wrong = diagnostics_of(read(&text.replace("rub.*", "rab.*"), &[])).records();
     assert_eq!(wrong[0].message, "there is no effect, joint or output `rab.*`");
 }
 
 /// The pages' examples are files, or stand in the pages as whole models.
 #[test]
-fn what_the_pages_show_can_be_read() {
+fn examples_of_pages_are_read() {
     let page = fs::read_to_string(root().join("docs/guides/parts.md")).unwrap();
     let blocks: Vec<&str> = page.split("```yaml\n").skip(1).filter_map(|rest| rest.split("```").next()).collect();
     let blocks: Vec<&str> = blocks.into_iter().filter(|block| block.starts_with("model:")).collect();

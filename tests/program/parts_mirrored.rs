@@ -3,7 +3,7 @@
 use super::parts_placed::{ARM, ASKED, SPATIAL, bounds, courses, same};
 
 #[test]
-fn a_mirrored_instance_is_the_mechanism_that_is_mirrored_by_hand() {
+fn mirrored_instance_matches_a_mechanism_written_by_hand() {
     let instance = format!(
         "{ARM}instances: {{ one: {{ of: arm, mirror: y }} }}
 effects: {{ weight: {{ gravity: {{ acceleration: [1, -9.81] }} }} }}
@@ -44,7 +44,7 @@ outputs: {{ x: bar.x, y: bar.y, tip: bar.tip.y, a: pin.angle, s: guide.displacem
 }
 
 #[test]
-fn an_image_moves_as_the_mirror_shows() {
+fn mirrored_instance_moves_symmetrically() {
     let both = format!(
         "{ARM}instances: {{ one: {{ of: arm }}, two: {{ of: arm, mirror: y }}, three: {{ of: arm, mirror: x }} }}
 effects: {{ weight: {{ gravity: {{ acceleration: [3, 0] }} }} }}
@@ -61,7 +61,7 @@ outputs: {{ x1: one.bar.x, x2: two.bar.x, y1: one.bar.y, y2: two.bar.y, a1: one.
 }
 
 #[test]
-fn an_image_in_space_moves_as_the_mirror_shows() {
+fn mirrored_instance_in_space_moves_symmetrically() {
     for (axis, gravity, letter) in [("x", "[0, 2, -9]", "x"), ("y", "[2, 0, -9]", "y"), ("z", "[2, -9, 0]", "z")] {
         let text = format!(
             "{SPATIAL}instances: {{ one: {{ of: arm }}, two: {{ of: arm, mirror: {axis} }} }}
@@ -81,7 +81,7 @@ outputs: {{ x1: one.fore.x, x2: two.fore.x, y1: one.fore.y, y2: two.fore.y, z1: 
 
 /// A coin on a slope that is mirrored with it.
 #[test]
-fn the_image_of_a_coin_rolls_as_the_mirror_shows() {
+fn mirrored_coin_rolls_symmetrically() {
     let coin = "
 assemblies:
   coin:
@@ -113,7 +113,7 @@ outputs: {{ x1: one.disc.x, x2: two.disc.x, y1: one.disc.y, y2: two.disc.y, z1: 
 
 /// A worm turns a wheel whose helical gear drives another, and that a rack; the bearings feel the teeth.
 #[test]
-fn the_image_of_teeth_has_the_other_hand() {
+fn mirrored_teeth_have_the_opposite_hand() {
     let train = "
 assemblies:
   train:
@@ -172,7 +172,7 @@ outputs: {{ {}, {} }}
 /// Drives that follow targets by their rates, through rate limits and in a computer's time, and a wheel on the other
 /// side of its rail. Formulas of an instance refer to quantities in the frame of the instance.
 #[test]
-fn the_image_of_a_controller_and_of_a_wheel() {
+fn mirrored_controller_and_wheel_move_symmetrically() {
     let cart = "
 assemblies:
   cart:

@@ -56,7 +56,7 @@ bounds: { chebyshev: { order: 3 } }
 
 /// Coordinates that a body does not have are those of its instance.
 #[test]
-fn bodies_without_some_coordinates_are_where_their_instance_is() {
+fn missing_coordinates_follow_the_instance() {
     let text = format!(
         "
 assemblies:
@@ -80,7 +80,7 @@ outputs: {{ y1: one.bob.y, y2: 2 - two.bob.y, x1: one.bob.P.x + 1, x2: two.bob.P
 
 /// All numbers of a placement are parameters, in the frame of the instance around it.
 #[test]
-fn numbers_of_places_are_set_and_have_tolerances() {
+fn numbers_of_placements_are_parameters() {
     let text = format!(
         "{ARM}
   pair: {{ instances: {{ one: {{ of: arm, at: {{ position: [0.1, 0, 0], rotation: {{ rpy: [0, 0, 10 deg ± 1 deg] }} }} }} }} }}
@@ -111,7 +111,7 @@ outputs: {{ x: left.one.ground.x, y: left.one.ground.y, z: left.one.ground.z, ha
 
 /// A drive of many joints that turn counts the other way in a mirror as that of one does.
 #[test]
-fn drives_of_many_turn_the_other_way_in_a_mirror() {
+fn mirrored_drives_of_many_joints_turn_the_other_way() {
     let text = format!(
         "
 assemblies:
@@ -147,7 +147,7 @@ fn root() -> &'static Path {
 
 /// The gripper of the guide is that of the models, whose fingers are written without parts.
 #[test]
-fn a_gripper_of_linkages_is_the_gripper() {
+fn gripper_of_parts_matches_the_gripper() {
     let file = "docs/examples/gripper_of_parts.yaml";
     let page = fs::read_to_string(root().join("docs/guides/parts.md")).unwrap();
     assert!(page.contains(&fs::read_to_string(root().join(file)).unwrap()));
@@ -160,7 +160,7 @@ fn a_gripper_of_linkages_is_the_gripper() {
 
 /// Legs that differ by their placements alone move alike, and start where plane geometry says.
 #[test]
-fn legs_around_a_body_move_alike() {
+fn legs_around_a_body_move_equally() {
     let model = Model::from_file(root().join("docs/examples/hexapod.yaml")).unwrap();
     let (found, _) = run(&model);
     let bend = 80_f64.to_radians();
@@ -179,7 +179,7 @@ fn legs_around_a_body_move_alike() {
 
 /// An assembly gives the starts of bodies of inner instances, by their ports too, in its own frame.
 #[test]
-fn starts_of_inner_bodies_are_in_the_frame_in_which_they_are_said() {
+fn starts_of_inner_bodies_are_in_the_assemblys_frame() {
     let side = |mirror: &str| {
         format!(
             r#"

@@ -141,7 +141,7 @@ fn outputs(names: [&str; 4], part: impl Fn(&str, &str) -> String) -> String {
 /// Axles of two corners, one the other's image, in a train that is mirrored as a whole: left corners of the axle behind
 /// are mirrored twice.
 #[test]
-fn three_levels_are_the_mechanism_written_by_hand() {
+fn three_levels_match_the_mechanism_written_by_hand() {
     let nested = format!(
         "{CORNER}
   axle:

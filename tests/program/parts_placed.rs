@@ -84,7 +84,7 @@ assemblies:
 
 /// Points at the start are those of the instance, up to the error of the steps.
 #[test]
-fn a_placed_instance_starts_where_its_points_say() {
+fn placed_instance_starts_at_given_points() {
     let arm = "
 assemblies:
   arm:
@@ -112,7 +112,7 @@ outputs: {{ x1: one.bar.B.x, x2: two.bar.B.x - 1, x3: three.bar.B.x, y1: one.bar
 
 /// Friction in a joint of an instance is that of the model's own joint.
 #[test]
-fn joints_of_instances_rub() {
+fn joints_of_instances_have_friction() {
     let parts = |of: &str| {
         format!(
             "bodies: {{ bar: {{ mass: 1, inertia: 0.02, points: {{ A: [-0.1, 0] }} }} }}{of}joints: {{ pin: {{ revolute: [ground, bar.A] }} }}{of}effects: {{ rub: {{ joint_friction: {{ on: pin, viscous: 0.5, coefficient: 0.2, radius: 0.02 }} }} }}{of}initial: {{ pin.angle: 0 }}"
@@ -169,7 +169,7 @@ outputs:
 }
 
 #[test]
-fn a_place_in_space_has_a_frame() {
+fn placement_in_space_sets_the_frame() {
     let text = format!(
         "{SPATIAL}instances: {{ one: {{ of: arm }}, two: {{ of: arm, at: {{ position: [1, 2 m, 3], rotation: {{ axis: x, angle: 90 deg }} }} }} }}
 outputs: {{ x1: one.fore.x + 1, y1: 2 - one.fore.z, z1: 3 + one.fore.y, x2: two.fore.x, y2: two.fore.y, z2: two.fore.z, a1: one.elbow.angle, a2: two.elbow.angle }}
@@ -184,7 +184,7 @@ outputs: {{ x1: one.fore.x + 1, y1: 2 - one.fore.z, z1: 3 + one.fore.y, x2: two.
 
 /// The placement of each instance may be uncertain by itself.
 #[test]
-fn a_place_has_tolerances() {
+fn placements_may_have_tolerances() {
     let text = format!(
         "{ARM}instances: {{ one: {{ of: arm, at: [0.1 m ± 1 mm, 0] }}, two: {{ of: arm, at: [0.1 m, 0] }} }}
 outputs: {{ x: one.bar.x, y: two.bar.y }}

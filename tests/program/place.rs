@@ -58,7 +58,7 @@ impl Place {
 }
 
 /// All diagnostics of a model: its errors or its warnings.
-pub fn told(model: Result<Model, Error>) -> Diagnostics {
+pub fn diagnostics_of(model: Result<Model, Error>) -> Diagnostics {
     match model {
         Ok(model) => model.warnings().clone(),
         Err(Error::Model(diagnostics)) => diagnostics,

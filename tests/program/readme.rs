@@ -27,7 +27,7 @@ fn the_first_screen_has_the_two_commands() {
 }
 
 #[test]
-fn its_rust_is_the_example_of_the_crate_page() {
+fn rust_example_matches_that_of_the_guide() {
     // The guide's example is a doctest.
     let guide = include_str!("../../docs/guides/rust.md");
     assert_eq!(blocks("rust").count(), 1);

@@ -21,7 +21,7 @@ fn a_report_is_made_again_to_the_byte() {
 }
 
 #[test]
-fn without_a_report_nothing_of_it_is_written_and_the_rest_is_the_same() {
+fn run_without_report_writes_the_same_other_files() {
     let place = Place::new();
     place.model("crank");
     let bounds = || fs::read(place.path().join("results/crank/bounds.csv")).unwrap();
@@ -84,7 +84,7 @@ fn a_folder_without_results_is_named() {
 
 /// The files of a folder may be anyone's.
 #[test]
-fn what_acts_in_a_plot_does_not_in_the_page() {
+fn active_content_of_plots_is_disabled_in_the_report() {
     let place = Place::new();
     place.model("crank");
     place.run("run -q -m scan crank.yaml", 0);

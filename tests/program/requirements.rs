@@ -36,7 +36,7 @@ fn numbers(table: &str, beginning: &str) -> Vec<f64> {
 }
 
 #[test]
-fn what_holds_has_a_margin_and_reduced_outputs_their_closed_forms() {
+fn margins_and_reduced_outputs_match_closed_forms() {
     let place = Place::new();
     fall(&place, "-1.3 m");
     let (output, errors) = place.run("run fall.yaml --junit verdicts.xml", 0);
@@ -60,7 +60,7 @@ fn what_holds_has_a_margin_and_reduced_outputs_their_closed_forms() {
 }
 
 #[test]
-fn what_is_violated_ends_with_4_and_a_command_that_shows_it() {
+fn violation_ends_with_status_4_and_a_replay_command() {
     let place = Place::new();
     fall(&place, "-1.23 m");
     let (output, _) = place.run("run fall.yaml --junit verdicts.xml", 4);
@@ -93,7 +93,7 @@ fn a_sweep_has_a_row_for_each_value() {
 }
 
 #[test]
-fn what_is_undecided_ends_with_3_and_says_what_decides() {
+fn undecided_requirement_ends_with_status_3_and_a_remedy() {
     let place = Place::new();
     // 0.25 m at least; the line through two nodes says 0.125 m.
     let text = "
@@ -120,7 +120,7 @@ bounds: { chebyshev: { order: 1, expand: output }, budget: { solves: 40 } }
 /// A mass on a spring, thrown from rest at v, is at most v/√k away: proven of the true motion, at rows and between;
 /// of the scheme's, where certified bounds see every step, or the row that is asked for.
 #[test]
-fn certified_bounds_prove_what_they_see() {
+fn certified_bounds_prove_requirements() {
     let place = Place::new();
     let rows = |step: &str, certify: &str| {
         let text = format!(

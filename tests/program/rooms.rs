@@ -144,7 +144,7 @@ fn use_trees_are_expanded() {
 }
 
 #[test]
-fn rooms_import_only_what_is_before_them() {
+fn rooms_import_only_earlier_rooms() {
     let mut wrong = BTreeSet::new();
     for (source, rooms) in CRATES {
         let package = Package::of(source);

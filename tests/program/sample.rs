@@ -51,7 +51,7 @@ fn columns(path: &Path) -> BTreeMap<String, Vec<f64>> {
 }
 
 #[test]
-fn samples_of_a_design_fall_as_they_should() {
+fn samples_of_a_design_match_free_fall() {
     let place = Place::new();
     fs::write(place.path().join("fall.yaml"), FALL).unwrap();
     for design in ["sobol:1500", "lhs:1500"] {
@@ -77,7 +77,7 @@ fn samples_of_a_design_fall_as_they_should() {
 }
 
 #[test]
-fn samples_of_a_table_are_those_of_its_rows() {
+fn samples_of_a_table_match_its_rows() {
     let place = Place::new();
     fs::write(place.path().join("fall.yaml"), FALL).unwrap();
     // One parameter is not among the columns, and one value lies outside its tolerance.
@@ -134,7 +134,7 @@ fn samples_of_shards_have_the_same_bytes() {
 
 /// A crank whose rod may be too short to go round: some samples cannot be assembled, some stop.
 #[test]
-fn where_there_is_no_motion_there_is_no_number() {
+fn samples_without_motion_have_no_values() {
     let place = Place::new();
     let model = "
 model: rod

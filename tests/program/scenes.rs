@@ -168,7 +168,7 @@ scenes:
 }
 
 #[test]
-fn a_scene_changes_what_it_says_and_nothing_else() {
+fn scene_changes_only_its_own_keys() {
     let scenes = "
 scenes:
   same: {}
@@ -231,7 +231,7 @@ scenes:
 }
 
 #[test]
-fn what_a_model_leaves_out_a_scene_can_put_in() {
+fn scenes_may_restore_omitted_parts() {
     let text = format!("{CRANK}{EFFECTS}{ASKED}without: [weight, load]\nscenes: {{ heavy: {{ with: [weight] }} }}\n");
     let model = model::load_str("test.yaml", &text, &[]).unwrap();
     assert_eq!((model.effects.len(), model.effects[0].name.as_str(), model.outputs.len()), (14, "push", 1));
@@ -240,7 +240,7 @@ fn what_a_model_leaves_out_a_scene_can_put_in() {
 }
 
 #[test]
-fn what_is_left_out_is_reported_where_it_is_named() {
+fn references_to_omitted_parts_are_reported() {
     let text = format!("{CRANK}{EFFECTS}{ASKED}scenes: {{ open: {{ without: [wrist, x] }} }}\n");
     let report = model::load_str("test.yaml", &text, &[]).unwrap_err();
     let expected = "\
@@ -262,7 +262,7 @@ error[E0401]: unknown joint `wrist`
 
 #[test]
 #[ignore = "3 s"]
-fn a_robots_effects_are_left_out_and_its_limits_become_stops() {
+fn scenes_omit_effects_and_limits_of_a_robot() {
     let place = Place::new();
     let robot = r#"<robot name="r">
   <link name="base"/>
@@ -354,7 +354,7 @@ fn the_examples_are_right() {
 
 /// An output that is called like an effect or a joint stays when the effect or joint is omitted.
 #[test]
-fn what_is_left_out_is_the_effect_and_not_the_output_of_its_name() {
+fn omission_of_an_effect_keeps_the_output_of_its_name() {
     let text = format!(
         "{CRANK}{EFFECTS}outputs: {{ drive: slider.x, spring: rod.x }}\nwithout: [drive]\nscenes: {{ slack: {{ without: [spring] }} }}\n"
     );

@@ -31,7 +31,7 @@ scenes:
 }
 
 #[test]
-fn scenes_are_run_each_by_itself_and_shown_side_by_side() {
+fn scenes_are_run_separately_and_compared() {
     let place = Place::new();
     door(&place);
     let (output, errors) = place.run("run door.yaml", 0);
@@ -135,7 +135,7 @@ fn scenes_are_chosen_by_name() {
 }
 
 #[test]
-fn check_and_explain_know_scenes() {
+fn check_and_explain_accept_scenes() {
     let place = Place::new();
     door(&place);
     let (output, _) = place.run("check door.yaml", 0);
@@ -159,7 +159,7 @@ fn check_and_explain_know_scenes() {
 
 /// A four-bar whose rocker does not reach in one scene.
 #[test]
-fn a_scene_that_fails_does_not_take_the_others_with_it() {
+fn failed_scene_does_not_stop_the_others() {
     let place = Place::new();
     let text = "
 model: rocker
@@ -200,7 +200,7 @@ bounds: { scan: { points: 3 } }
 #[cfg(unix)]
 #[test]
 #[ignore = "2 s"]
-fn a_ctrl_c_keeps_the_scenes_that_are_done() {
+fn ctrl_c_keeps_finished_scenes() {
     use std::process::{Command, Stdio};
     let place = Place::new();
     door(&place);
@@ -233,7 +233,7 @@ fn a_ctrl_c_keeps_the_scenes_that_are_done() {
 }
 
 #[test]
-fn a_part_of_a_box_is_said_to_be_one() {
+fn partial_coverage_of_a_box_is_reported() {
     let place = Place::new();
     let text = "
 model: arm

@@ -34,7 +34,7 @@ fn the_committed_schema_is_current() {
 }
 
 #[test]
-fn the_models_keep_to_the_schema_and_name_it() {
+fn models_satisfy_the_schema_and_refer_to_it() {
     let validator = validator();
     let paths = yaml_files("models");
     assert!(!paths.is_empty());
@@ -52,7 +52,7 @@ fn the_models_keep_to_the_schema_and_name_it() {
 
 /// The schema accepts all that the reader accepts, texts outside of the shipped folder included.
 #[test]
-fn the_schema_accepts_what_can_be_read() {
+fn schema_accepts_all_readable_models() {
     let validator = validator();
     let examples = yaml_files("docs/examples")
         .into_iter()
@@ -127,7 +127,7 @@ fn only_semantics_is_beyond_the_schema() {
 /// Every value of every model is replaced by possible mistakes: where the schema refuses, the reader does.
 #[test]
 #[ignore = "10 s"]
-fn the_schema_refuses_nothing_that_can_be_read() {
+fn schema_refuses_no_readable_model() {
     let validator = validator();
     let others = ["-1", "0", "0.5", "2", "\"-3 m\"", "text", "[1, 2]", "{}", "-0.05"];
     let mut refused = 0;
@@ -177,7 +177,7 @@ fn leaves(value: &serde_json::Value) -> Vec<String> {
 }
 
 #[test]
-fn the_schema_knows_ranges_and_keys_that_exclude_each_other() {
+fn schema_checks_ranges_and_exclusive_keys() {
     let validator = validator();
     let valid = |text: &str| validator.is_valid(&as_json(text).unwrap());
     let bar = "
@@ -242,7 +242,7 @@ bounds: { scan: { points: 3 }, chebyshev: { order: 4 } }
 }
 
 #[test]
-fn the_schema_knows_wrong_keys_and_types() {
+fn schema_refuses_wrong_keys_and_types() {
     let validator = validator();
     for name in ["unknown-key", "unknown-top-level-key", "unknown-kinds", "wrong-types", "missing-simulation"] {
         let text = fs::read_to_string(root().join(format!("tests/bad_models/{name}.yaml"))).unwrap();

@@ -77,7 +77,7 @@ fn bounds_are_the_same_bits_with_shapes() {
 }
 
 #[test]
-fn shapes_are_where_the_file_puts_them_and_leave_no_plane() {
+fn shapes_have_given_positions_and_keep_models_planar() {
     let place = place_of(&pendulum(SHAPES));
     let drawing = drawing(&place);
     assert_eq!(drawing["spatial"], false);
@@ -141,7 +141,7 @@ simulation: { duration: 0.1, step: 1e-3, output_step: 0.1 }
 }
 
 #[test]
-fn surfaces_of_contacts_are_drawn_as_they_touch() {
+fn surfaces_of_contacts_are_drawn_with_their_geometry() {
     let contact = "impact: { stiffness: 1e5, exponent: 1, dissipation: 5 }";
     let text = format!(
         "

@@ -79,7 +79,7 @@ fn merged_shards_have_the_certificate_of_a_run() {
 }
 
 #[test]
-fn merged_shards_are_the_run() {
+fn merged_shards_equal_the_run() {
     let place = Place::new();
     fs::write(place.path().join("pendulum.yaml"), PENDULUM).unwrap();
     place.run("run pendulum.yaml -o direct -q", 0);
@@ -96,7 +96,7 @@ fn merged_shards_are_the_run() {
 }
 
 #[test]
-fn what_is_missing_is_reported() {
+fn missing_shards_are_reported() {
     let place = Place::new();
     fs::write(place.path().join("pendulum.yaml"), PENDULUM).unwrap();
     place.run("plan pendulum.yaml -o study --at-once 0", 0);
@@ -123,7 +123,7 @@ fn what_is_missing_is_reported() {
 }
 
 #[test]
-fn a_run_goes_on_from_what_is_stored() {
+fn run_continues_from_stored_parts() {
     let place = Place::new();
     fs::write(place.path().join("pendulum.yaml"), PENDULUM).unwrap();
     place.run("run pendulum.yaml -o direct -q", 0);
@@ -150,7 +150,7 @@ fn a_run_goes_on_from_what_is_stored() {
 
 /// A pendulum whose reduced outputs need simulations of their own: Taylor's method has none of its samples for them.
 #[test]
-fn simulations_for_reduced_outputs_count_wherever_they_come_from() {
+fn simulations_for_reduced_outputs_are_always_counted() {
     let place = Place::new();
     let bounds = "bounds: { tolerance: 1e-3, chebyshev: {}, scan: { points: 9 } }";
     let text = PENDULUM.replace(bounds, "bounds: { taylor: { order: 2 } }");
@@ -201,7 +201,7 @@ bounds: { chebyshev: { order: 3 }, scan: { points: 5 } }
 const PULL: &str = "t,pull\n0,1\n1,1.1\n";
 
 #[test]
-fn merged_verdicts_and_statistics_are_those_of_the_run() {
+fn merged_verdicts_and_statistics_equal_those_of_the_run() {
     let place = Place::new();
     fs::write(place.path().join("thrown.yaml"), THROWN).unwrap();
     fs::write(place.path().join("pull.csv"), PULL).unwrap();
@@ -232,7 +232,7 @@ statistics: {}
 
 #[test]
 #[ignore = "2 s"]
-fn merged_verdicts_of_parts_are_those_of_the_run() {
+fn merged_verdicts_of_parts_equal_those_of_the_run() {
     let place = Place::new();
     fs::write(place.path().join("apart.yaml"), APART).unwrap();
     place.run("run apart.yaml -o direct -q", 0);
@@ -261,7 +261,7 @@ statistics: { samples: 1024 }
 
 #[test]
 #[ignore = "10 s"]
-fn merged_bounds_through_events_are_those_of_the_run() {
+fn merged_bounds_through_events_equal_those_of_the_run() {
     let place = Place::new();
     fs::write(place.path().join("ceiling.yaml"), CEILING).unwrap();
     place.run("run ceiling.yaml -o direct -q", 0);
@@ -318,7 +318,7 @@ assemblies:
 }
 
 #[test]
-fn a_killed_run_leaves_nothing_behind_the_next_one() {
+fn files_of_a_killed_run_are_removed_by_the_next_run() {
     let place = Place::new();
     let long = THROWN.replace("step: 1e-3", "step: 1e-7").replace("requirements", "#").replace("  low", "#");
     let long = long.replace("  below", "#").replace("statistics:", "#");
@@ -350,7 +350,7 @@ fn a_killed_run_leaves_nothing_behind_the_next_one() {
 
 #[test]
 #[ignore = "2 s"]
-fn the_disk_that_a_store_takes_is_reported_before() {
+fn disk_space_of_a_store_is_reported_beforehand() {
     let place = Place::new();
     fs::write(place.path().join("thrown.yaml"), THROWN).unwrap();
     fs::write(place.path().join("pull.csv"), PULL).unwrap();
@@ -374,7 +374,7 @@ fn the_disk_that_a_store_takes_is_reported_before() {
 /// A rod that is shorter than the height of its crank's end reaches no block.
 #[test]
 #[ignore = "2 s"]
-fn what_cannot_be_assembled_is_left_out_of_shards_too() {
+fn shards_omit_infeasible_samples() {
     let place = Place::new();
     let text = "
 model: rod

@@ -59,7 +59,7 @@ fn titles(picture: &str) -> BTreeSet<String> {
 }
 
 #[test]
-fn bodies_are_where_geometry_puts_them() {
+fn positions_of_bodies_match_geometry() {
     let place = Place::new();
     let (drawing, picture) = shown(&place, "press", SLIDER_CRANK);
     // The crank points up: 0.3, 0.4 and 0.5 m are a right triangle.

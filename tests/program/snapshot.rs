@@ -21,7 +21,7 @@ bounds: { chebyshev: { order: 3 }, scan: { points: 3 } }
 ";
 
 #[test]
-fn a_snapshot_is_beside_its_model_and_tells_what_moved() {
+fn snapshot_is_next_to_its_model_and_reports_changes() {
     let place = Place::new();
     fs::create_dir(place.path().join("parts")).unwrap();
     let model = |text: &str| fs::write(place.path().join("parts/fall.yaml"), text).unwrap();

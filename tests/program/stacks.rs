@@ -48,7 +48,7 @@ fn the_report_has_the_chain_and_can_be_made_again() {
 }
 
 #[test]
-fn the_summary_has_all_of_it() {
+fn summary_has_chains_and_statistics() {
     let place = with_example("bearing_gap");
     let (json, _) = place.run("run bearing_gap.yaml -o out --format json", 4);
     let summary: Value = serde_json::from_str(&json).unwrap();
@@ -61,7 +61,7 @@ fn the_summary_has_all_of_it() {
 }
 
 #[test]
-fn questions_of_a_mechanism_are_refused_and_gradients_answered() {
+fn mechanism_questions_are_refused_and_gradients_answered() {
     let place = with_example("overrunning_clutch");
     let (printed, _) = place.run("gradient overrunning_clutch.yaml -o out", 0);
     // 1/((e - c) sin φ) is 11.9105 deg/mm.

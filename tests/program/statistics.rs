@@ -6,7 +6,7 @@ use std::path::Path;
 use crate::place::Place;
 
 #[test]
-fn the_guides_example_has_statistics_beside_its_bounds() {
+fn example_of_the_guide_has_statistics_and_bounds() {
     let page = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/guides/statistics.md")).unwrap();
     let example = page.split("```yaml\n").nth(1).unwrap().split("```").next().unwrap();
     let place = Place::new();
@@ -34,7 +34,7 @@ fn tail(z: f64) -> f64 {
 }
 
 #[test]
-fn yields_of_reduced_outputs_between_rows_and_of_few_that_fail() {
+fn yields_of_peaks_and_rare_failures_match_closed_forms() {
     let place = Place::new();
     // Thrown up at v: the peak v²/2g lies between rows; at the end y = v/2 − g/8.
     let text = "
@@ -80,7 +80,7 @@ bounds: { chebyshev: { order: 3 } }
 /// The yields of a reduced output by the surrogate and by direct simulation of random samples, in lockstep.
 #[test]
 #[ignore = "2 s"]
-fn yields_of_a_stroke_are_those_of_direct_simulations() {
+fn yields_of_a_stroke_match_direct_simulations() {
     const COUNT: usize = 3000;
     let place = Place::new();
     let text = "
@@ -156,7 +156,7 @@ bounds: { chebyshev: { order: 1 } }
 ";
 
 #[test]
-fn a_stack_has_worst_case_root_sum_square_and_statistics_side_by_side() {
+fn stack_has_worst_case_rss_and_statistics() {
     let place = Place::new();
     fs::write(place.path().join("stack.yaml"), STACK).unwrap();
     // One box may be too small, and is.

@@ -210,7 +210,7 @@ outputs: {{ z: plate.z }}
 }
 
 #[test]
-fn drives_and_what_is_far_are_told() {
+fn drives_and_distant_points_are_reported() {
     let model = "bodies:
   ground: { points: { post: [0, 0.5], unused: [0, 9e5 m] } }
   cart: { mass: 2, inertia: 0.1, coordinates: [x] }

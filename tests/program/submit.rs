@@ -33,7 +33,7 @@ fn submitted(place: &Place, study: &str, results: &str) -> (Option<i32>, String)
 }
 
 #[test]
-fn folders_may_have_names_that_a_shell_reads() {
+fn folders_may_have_names_with_shell_syntax() {
     for name in ["my study", "it's", "p%j 100%", "a\"b`date`", "$(touch made);&"] {
         let place = Place::new();
         let (status, errors) = submitted(&place, name, &format!("results of {name}"));
@@ -54,7 +54,7 @@ fn folders_may_have_names_that_a_shell_reads() {
 }
 
 #[test]
-fn names_that_slurm_cannot_have_are_refused_before_anything_is_submitted() {
+fn names_unusable_by_slurm_are_refused_before_submission() {
     for (study, results) in
         [("a\ntouch made\n", "out"), ("study", "b\n#SBATCH"), ("c\\d", "out"), ("e\u{1b}[31m", "out")]
     {

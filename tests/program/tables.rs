@@ -50,12 +50,12 @@ fn the_page_shows_the_example() {
 }
 
 #[test]
-fn a_sweep_is_that_of_the_snapshot() {
+fn sweep_matches_the_snapshot() {
     assert_table("sweep_one", "sweep EXAMPLES/tolerance_stack.yaml --set ring=7.95..8.05:3mm", 4, "sweep.csv");
 }
 
 #[test]
-fn a_sweep_of_two_is_that_of_the_snapshot() {
+fn sweep_of_two_parameters_matches_the_snapshot() {
     assert_table(
         "sweep_two",
         "sweep EXAMPLES/tolerance_stack.yaml --set ring=7.95..8.05:3mm --set spacer=39.9..40.1:2mm",
@@ -65,11 +65,11 @@ fn a_sweep_of_two_is_that_of_the_snapshot() {
 }
 
 #[test]
-fn an_allocation_is_that_of_the_snapshot() {
+fn allocation_matches_the_snapshot() {
     assert_table("allocation", "allocate EXAMPLES/tolerance_stack.yaml", 0, "allocation.csv");
 }
 
 #[test]
-fn statistics_are_those_of_the_snapshot() {
+fn statistics_match_the_snapshot() {
     assert_table("statistics", "run stack.yaml", 0, "statistics.csv");
 }

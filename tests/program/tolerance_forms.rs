@@ -57,7 +57,7 @@ fn assert_near(found: [f64; 2], expected: [f64; 2], form: &str) {
 }
 
 #[test]
-fn parameters_take_every_form() {
+fn parameters_accept_every_notation() {
     for (form, expected) in WHOLE {
         for place in [format!("\"{form}\""), format!("{{ value: \"{form}\" }}")] {
             assert_near(interval(&rod(&place), "m"), expected, &place);
@@ -73,7 +73,7 @@ fn parameters_take_every_form() {
 }
 
 #[test]
-fn the_command_line_takes_every_form() {
+fn command_line_accepts_every_notation() {
     for (form, expected) in WHOLE.into_iter().chain(ALONE) {
         // A whole number replaces the number in the file, a deviation alone is of the file's value.
         let file = if WHOLE.contains(&(form, expected)) { "3 kg" } else { "0.5 kg" };
@@ -83,7 +83,7 @@ fn the_command_line_takes_every_form() {
 }
 
 #[test]
-fn numbers_of_a_robot_take_every_form() {
+fn numbers_of_a_robot_accept_every_notation() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("arm.urdf"), ROBOT).unwrap();
     for (form, expected) in WHOLE.into_iter().chain(ALONE) {

@@ -21,7 +21,7 @@ fn orders_and_balances_are_tests() {
 
 /// A force with a corner everywhere has no smooth motion.
 #[test]
-fn what_is_not_verified_is_an_error() {
+fn unverified_model_is_a_junit_error() {
     let place = Place::new();
     let model = "model: kink\nbodies: { block: { mass: 1, coordinates: [x] } }\neffects: { push: { force: { on: block, value: [\"abs(sin(4000*t))\", 0] } } }\n\
                  outputs: { x: block.x }\nsimulation: { duration: 1, step: 1e-3 }\n";
@@ -36,7 +36,7 @@ fn what_is_not_verified_is_an_error() {
 
 /// The page has the verdict, the orders and the derivatives of every formulation, and no script.
 #[test]
-fn a_page_tells_all_of_it() {
+fn page_has_all_findings_of_a_verification() {
     let place = Place::new();
     place.run(concat!("verify ", env!("CARGO_MANIFEST_DIR"), "/models/slider_crank.yaml --quiet --html page.html"), 0);
     let page = fs::read_to_string(place.path().join("page.html")).unwrap();

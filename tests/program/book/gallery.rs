@@ -25,7 +25,7 @@ fn models() -> Vec<PathBuf> {
 }
 
 /// The first sentence of the comment at a model's head.
-fn says(text: &str) -> String {
+fn first_sentence(text: &str) -> String {
     let lines = text
         .lines()
         .skip_while(|line| line.starts_with("# yaml-language-server"))
@@ -46,8 +46,8 @@ fn the_gallery_has_every_model() {
         assert!(shown.status.success(), "{name}: {}", String::from_utf8_lossy(&shown.stderr));
         let picture = std::fs::read_to_string(place.path().join("mechanism.svg")).unwrap();
         expect_page(&docs().join(format!("images/models/{name}.svg")), &picture);
-        let says = says(&std::fs::read_to_string(&file).unwrap());
-        page += &format!("\n## {name}\n\n{says}.\n\n[![{name}](images/models/{name}.svg)]({FILES}/{name}.yaml)\n");
+        let sentence = first_sentence(&std::fs::read_to_string(&file).unwrap());
+        page += &format!("\n## {name}\n\n{sentence}.\n\n[![{name}](images/models/{name}.svg)]({FILES}/{name}.yaml)\n");
     }
     expect_page(&docs().join("gallery.md"), &page);
 }

@@ -67,7 +67,7 @@ fn regressions_are_found() {
 }
 
 #[test]
-fn the_instructions_of_shipped_models_are_those_of_the_page() {
+fn instructions_of_shipped_models_match_the_page() {
     let mut page = INTRODUCTION.to_owned();
     let mut steps = Vec::new();
     for file in shipped() {

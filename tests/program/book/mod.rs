@@ -65,7 +65,7 @@ const NO_RESULTS: [(&str, &[&str]); 5] = [
 #[test]
 #[ignore = "runs all commands of the book; half a minute"]
 #[cfg(unix)]
-fn commands_print_what_pages_say() {
+fn output_of_commands_matches_the_pages() {
     let mut files = Vec::new();
     pages(&docs(), &mut files);
     let mut with_commands = 0;
@@ -118,19 +118,19 @@ fn models_of_pages_with_a_button_can_be_read() {
 }
 
 #[test]
-fn the_page_of_methods_is_that_of_the_registry() {
+fn page_of_methods_matches_the_registry() {
     let methods = Command::new(BINARY).args(["explain", "--methods", "--format", "json"]).output().unwrap().stdout;
     expect_page(&docs().join("reference/methods.md"), &methods::page(std::str::from_utf8(&methods).unwrap()));
 }
 
 #[test]
-fn the_page_of_keys_is_that_of_the_schema() {
+fn page_of_keys_matches_the_schema() {
     let schema = Command::new(BINARY).arg("schema").output().unwrap().stdout;
     expect_page(&docs().join("reference/keys.md"), &keys::page(std::str::from_utf8(&schema).unwrap()));
 }
 
 #[test]
-fn the_page_of_joints_is_that_of_their_files() {
+fn page_of_joints_matches_their_files() {
     expect_page(&docs().join("reference/joints.md"), &joints::page());
 }
 
@@ -160,7 +160,7 @@ fn every_decision_is_in_the_index_and_in_the_book_once() {
 }
 
 #[test]
-fn the_lists_of_the_language_are_those_of_the_program() {
+fn lists_of_the_language_match_the_program() {
     for page in ["units", "functions", "outputs", "tuning", "exit-codes"] {
         let list = format!("--{page}");
         let printed = Command::new(BINARY).args(["explain", &list, "--page"]).output().unwrap().stdout;

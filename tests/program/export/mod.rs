@@ -177,7 +177,7 @@ int main(int count, char **given)
 /// At the upper ends of all parameters the C is that of `mbint sample`: linkages are assembled anew.
 #[test]
 #[ignore = "2 s"]
-fn a_start_of_other_parameters_is_that_of_a_sample() {
+fn start_at_other_parameters_matches_a_sample() {
     let place = Place::new();
     for name in ["slider_crank", "four_bars", "car_axis", "andrews"] {
         let model = format!("{}/models/{name}.yaml", env!("CARGO_MANIFEST_DIR"));
@@ -347,7 +347,7 @@ simulation: { duration: 2, STEPS, output_step: 0.02 }
 }
 
 #[test]
-fn what_is_not_written_is_refused() {
+fn unsupported_models_are_refused() {
     let place = Place::new();
     let model = format!("{}/models/four_bar_ventilator.yaml", env!("CARGO_MANIFEST_DIR"));
     let (_, message) = place.run(&format!("export {model} --c"), 2);

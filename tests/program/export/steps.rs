@@ -57,7 +57,7 @@ simulation: { duration: 0.3, STEPS, output_step: 0.03 }
 ";
 
 #[test]
-fn digital_controllers_are_those_of_samples() {
+fn digital_controllers_match_samples() {
     let place = Place::new();
     for steps in [
         "step: 3e-3",
@@ -83,7 +83,7 @@ simulation: { duration: 1, STEPS, output_step: 0.02 }
 ";
 
 #[test]
-fn steps_end_at_events_as_those_of_samples() {
+fn steps_at_events_match_samples() {
     let place = Place::new();
     for steps in ["tolerance: 1e-4, scheme: hht", "tolerance: 1e-4, extrapolation: 2"] {
         repeats_samples(&place, &BALL.replace("STEPS", steps));
@@ -92,7 +92,7 @@ fn steps_end_at_events_as_those_of_samples() {
 
 /// Constraints, with reactions and accelerations of rows.
 #[test]
-fn steps_of_linkages_are_those_of_samples() {
+fn steps_of_linkages_match_samples() {
     let place = Place::new();
     let own = fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/models/slider_crank.yaml")).unwrap();
     let own = own.split("outputs:").next().unwrap().replace("slider_crank", "own");
@@ -140,7 +140,7 @@ simulation: { duration: 0.5, STEPS, output_step: 0.05 }
 ];
 
 #[test]
-fn equilibria_of_other_parameters_are_those_of_samples() {
+fn equilibria_at_other_parameters_match_samples() {
     let place = Place::new();
     for (model, steps) in [(0, "step: 2e-3"), (0, "tolerance: 1e-6, scheme: explicit"), (1, "step: 2e-3")] {
         repeats_samples(&place, &AT_REST[model].replace("STEPS", steps));
@@ -149,7 +149,7 @@ fn equilibria_of_other_parameters_are_those_of_samples() {
 
 /// A parallelogram becomes flat with the nominal crank: the first sample passes a singular configuration.
 #[test]
-fn singular_configurations_are_passed_as_samples_do() {
+fn motions_through_singular_configurations_match_samples() {
     let model = "model: own
 parameters: { l: 1 m ± 1% }
 bodies:

@@ -19,7 +19,7 @@ fn with_mounts(place: &Place, script: &str) -> (i32, String) {
 #[cfg(target_os = "linux")]
 #[test]
 #[ignore = "mounts a file system"]
-fn a_full_disk_is_one_message_and_the_older_results_stay() {
+fn a_full_disk_gives_one_message_and_keeps_older_results() {
     let place = Place::new();
     place.model("crank");
     // The table fits; with all other files the disk is full.
@@ -51,7 +51,7 @@ fn a_read_only_folder_is_reported_before_the_run() {
 
 /// The results are those of one of the two.
 #[test]
-fn two_runs_into_one_folder_leave_the_files_of_one() {
+fn concurrent_runs_leave_the_files_of_one_run() {
     let place = Place::new();
     place.model("crank");
     let results = |folder: &str| {

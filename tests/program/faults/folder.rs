@@ -9,7 +9,7 @@ use super::interrupts::interrupted;
 use crate::place::Place;
 
 #[test]
-fn files_of_an_older_run_go_and_other_files_stay() {
+fn only_files_of_an_older_run_are_removed() {
     let place = Place::new();
     place.model("crank");
     place.run("run -q crank.yaml -o out", 0);
@@ -62,7 +62,7 @@ fn an_interrupted_run_does_not_replace_a_complete_one() {
 }
 
 #[test]
-fn a_full_standard_output_does_not_end_the_models_that_follow() {
+fn full_standard_output_does_not_stop_later_models() {
     let Ok(full) = fs::OpenOptions::new().write(true).open("/dev/full") else { return };
     let place = Place::new();
     place.model("one");

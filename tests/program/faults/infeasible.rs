@@ -83,7 +83,7 @@ fn lengths_beyond_all_numbers_are_reported() {
 }
 
 #[test]
-fn a_sample_that_does_not_fit_names_its_parameters() {
+fn infeasible_sample_is_reported_with_its_parameters() {
     // The nominal coupler fits; the longest of the interval does not.
     let message = run(&four_bar(WIDE, FURTHER), false).unwrap_err();
     println!("{message}");
@@ -92,7 +92,7 @@ fn a_sample_that_does_not_fit_names_its_parameters() {
 }
 
 #[test]
-fn what_cannot_be_assembled_is_reported_with_its_place_and_share() {
+fn infeasible_part_is_reported_with_its_limits_and_share() {
     let description = four_bar(WIDE, FURTHER);
     let message = run(&description, false).unwrap_err();
     println!("{message}");
@@ -109,7 +109,7 @@ fn what_cannot_be_assembled_is_reported_with_its_place_and_share() {
 }
 
 #[test]
-fn the_rest_is_bounded_and_says_how_much_it_is() {
+fn feasible_part_is_bounded_with_its_share() {
     let description = four_bar(WIDE, FURTHER);
     let result = finished(description.study(), true).unwrap();
     let (bounds, summary) = (result.bounds(), result.summary());
@@ -146,7 +146,7 @@ fn the_rest_is_bounded_and_says_how_much_it_is() {
 }
 
 #[test]
-fn a_box_that_is_feasible_is_bounded_as_ever() {
+fn feasible_box_has_unchanged_bounds() {
     let description = four_bar("value: 0.25, tolerance: 2%", FURTHER);
     let (plain, skipping) = (run(&description, false).unwrap(), run(&description, true).unwrap());
     assert_eq!(plain.0.outputs, skipping.0.outputs);
@@ -156,7 +156,7 @@ fn a_box_that_is_feasible_is_bounded_as_ever() {
 }
 
 #[test]
-fn what_is_nowhere_feasible_is_an_error_with_and_without() {
+fn fully_infeasible_box_is_always_an_error() {
     let text = "value: 0.6, tolerance: 1%";
     for skip in [false, true] {
         let message = run(&four_bar(text, FURTHER), skip).unwrap_err();
@@ -191,7 +191,7 @@ bounds: { chebyshev: { order: 5 }, scan: { points: 21 } }
 
 /// The crank cannot pass where its end is 0.26 + r from the rocker's pivot.
 #[test]
-fn a_lock_inside_the_box_ends_what_needs_it_and_no_more() {
+fn locking_in_a_part_of_the_box_ends_only_its_methods() {
     let (bounds, summary) = run(&grashof(), false).unwrap();
     let failure = summary.failure.unwrap();
     assert!(failure.contains("(r = 0.13") && failure.contains("locks at t = "), "{failure}");
@@ -212,7 +212,7 @@ fn a_lock_inside_the_box_ends_what_needs_it_and_no_more() {
 }
 
 #[test]
-fn a_lock_inside_the_box_is_left_out_from_when_it_locks() {
+fn locked_part_of_the_box_is_omitted_from_then_on() {
     let (bounds, summary) = run(&grashof(), true).unwrap();
     assert_eq!(summary.failure, None);
     println!("{:?}", bounds.covered);
@@ -225,7 +225,7 @@ fn a_lock_inside_the_box_is_left_out_from_when_it_locks() {
 
 /// One sample of a few runs into a square root of a negative number: the others have the same values as without it.
 #[test]
-fn a_sample_that_diverges_leaves_the_others_as_they_are() {
+fn diverging_sample_leaves_the_others_unchanged() {
     let model = |interval: &str| {
         read(&format!(
             "
@@ -260,7 +260,7 @@ bounds: {{ scan: {{ points: 12 }} }}
 
 /// The same with steps from a tolerance: a corner for which no step is small enough does not end the others' schedule.
 #[test]
-fn a_controlling_sample_that_locks_leaves_the_schedule_to_the_others() {
+fn locked_sample_no_longer_controls_the_schedule() {
     let result = finished(grashof().study().step_tolerance(1e-5), false).unwrap();
     let bounds = result.bounds();
     assert!(result.failure().unwrap().contains("r = 0.13"), "the sample is named");

@@ -46,7 +46,7 @@ pub(super) fn interrupted(place: &Place, arguments: &str, stage: &str, name: &st
 
 #[test]
 #[ignore = "5 s"]
-fn what_is_finished_at_a_ctrl_c_is_written() {
+fn ctrl_c_writes_finished_results() {
     let place = Place::new();
     long(&place);
     let (status, errors) = interrupted(&place, "run --yes crank.yaml -o out", "crank: scan", "-INT");
@@ -178,7 +178,7 @@ fn a_second_ctrl_c_does_not_wait() {
 /// Killed at any moment, a run leaves whole files or none; the next one works.
 #[test]
 #[ignore = "2 s"]
-fn a_killed_run_leaves_nothing_half() {
+fn killed_run_leaves_no_partial_files() {
     let place = Place::new();
     place.model("crank");
     place.run("run -q crank.yaml -o whole", 0);
@@ -205,7 +205,7 @@ fn a_killed_run_leaves_nothing_half() {
 }
 
 #[test]
-fn nothing_is_asked_of_a_terminal() {
+fn run_never_prompts_on_a_terminal() {
     let place = Place::new();
     place.model("crank");
     let mut command = place.command("run crank.yaml");
@@ -222,7 +222,7 @@ fn nothing_is_asked_of_a_terminal() {
 
 /// Nobody has to wait ten minutes to learn that a request was too large.
 #[test]
-fn a_dear_run_is_refused_before_it_begins() {
+fn costly_run_is_refused_before_it_begins() {
     let place = Place::new();
     long(&place);
     let begun = Instant::now();

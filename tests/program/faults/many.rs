@@ -66,7 +66,7 @@ fn memory_of_statistics_does_not_grow_with_requirements() {
 
 #[cfg(target_os = "linux")]
 #[test]
-fn what_would_not_find_room_is_refused_before_it_begins() {
+fn run_without_enough_memory_is_refused_before_it_begins() {
     let place = Place::new();
     let outputs: Vec<String> = (0..300).map(|n| format!("o{n}: \"{}*b.x\"", n + 1)).collect();
     pushed(&place, &format!("outputs: {{ {} }}", outputs.join(", ")), "duration: 1000, step: 1e-3, output_step: 1e-3");

@@ -28,7 +28,7 @@ fn files_and_folders_may_have_any_name() {
 
 /// A model without a name of its own is called like its file, and so is its folder.
 #[test]
-fn a_model_that_is_called_like_its_file_stays_in_its_folder() {
+fn name_from_the_file_stays_within_the_results() {
     let place = Place::new();
     place.model("crank");
     let text = fs::read_to_string(place.path().join("crank.yaml")).unwrap().replace("\nmodel: crank\n", "\n");
@@ -74,7 +74,7 @@ fn control_characters_of_arguments_are_not_shown() {
 
 /// A model's own files are files; the model itself may come from a pipe.
 #[test]
-fn what_a_model_names_is_no_pipe() {
+fn pipes_named_by_a_model_are_refused() {
     let place = Place::new();
     place.model("crank");
     let text = fs::read_to_string(place.path().join("crank.yaml")).unwrap();

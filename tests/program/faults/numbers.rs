@@ -26,7 +26,7 @@ fn limits_of_a_parameter_are_finite() {
 }
 
 #[test]
-fn a_term_that_is_no_finite_number_is_named_with_its_time() {
+fn non_finite_term_is_reported_with_its_time() {
     let place = Place::new();
     for (torque, term) in [("1/t", "`1/t`"), ("3 + 2*log(t/tau)", "`log(t)`")] {
         fs::write(place.path().join("rod.yaml"), rod("2%", torque)).unwrap();

@@ -68,7 +68,7 @@ fn a_panic_before_the_methods_costs_one_subsystem_of_them() {
 /// the beam are no constraints then.
 #[test]
 #[ignore = "2 s"]
-fn a_constraint_that_opens_beside_a_beam_is_named() {
+fn constraint_that_opens_next_to_a_beam_is_named() {
     let place = Place::new();
     for (speed, step) in [("3e5", "5e-5"), ("9e5", "2e-5"), ("220", "2e-3")] {
         let text = format!(

@@ -122,7 +122,7 @@ fn a_folder_in_the_way_of_a_plot_keeps_all_older_results() {
 
 /// The comparison of scenes is of one run: it goes before the first scene that it compares is replaced.
 #[test]
-fn a_comparison_is_never_of_other_results() {
+fn comparison_never_mixes_results_of_runs() {
     let place = Place::new();
     pushed(&place, 2);
     let path = place.path().join("pushed.yaml");

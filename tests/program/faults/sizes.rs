@@ -80,7 +80,7 @@ fn robot(links: usize) -> String {
 
 /// A chain so deep that joint coordinates are not tried, and one whose absolute coordinates include the joints'.
 #[test]
-fn a_long_robot_is_checked_in_the_memory_that_it_takes() {
+fn check_of_a_long_robot_takes_linear_instructions() {
     let place = Place::new();
     std::fs::write(place.path().join("snake.urdf"), robot(60)).unwrap();
     let (told, _) = place.run("check snake.urdf", 0);

@@ -26,7 +26,7 @@ fn assert_harmless(text: &str) {
 }
 
 #[test]
-fn names_from_files_are_only_shown() {
+fn names_from_files_are_shown_without_escape_sequences() {
     let place = Place::new();
     let raw = "\u{1b}]0;PWNED\u{7}\u{1b}[2J\u{1b}[31mx\u{9b}5m\u{202e}";
     let good = |name: &str| {

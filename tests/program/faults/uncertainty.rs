@@ -114,7 +114,7 @@ bounds: { chebyshev: { order: 5 }, taylor: { order: 4 }, scan: { points: 5 } }
 /// inside, that of the start has both sides. Unresolved rows have to be marked: every sample of a denser scan lies in
 /// the others' bounds, their errors included, or the row is marked.
 #[test]
-fn bounds_through_a_bifurcation_hold_or_say_that_they_do_not() {
+fn bounds_through_a_bifurcation_hold_or_are_flagged() {
     let text = |bounds: &str| {
         format!(
             "

@@ -128,7 +128,7 @@ fn place(version: u32, ball: bool, model: &str) -> Place {
 
 /// Both versions, both interfaces: parameters deviate from the unit's start values, and numbers are those of SI.
 #[test]
-fn bounds_of_units_are_those_of_the_closed_form() {
+fn bounds_of_units_match_the_closed_form() {
     for (version, interface) in
         [(2, "co_simulation"), (3, "co_simulation"), (2, "model_exchange"), (3, "model_exchange")]
     {
@@ -168,7 +168,7 @@ bounds: {{ chebyshev: {{ order: 5 }}, scan: {{ points: 5 }} }}
 
 /// A ball rebounds where the step of the integrator is cut, to the closed form.
 #[test]
-fn events_of_model_exchange_are_those_of_the_closed_form() {
+fn events_of_model_exchange_match_the_closed_form() {
     for version in [2, 3] {
         let model = "parameters: { k: 10 m/s^2 }
 black_box: { fmu: unit.fmu, interface: model_exchange }
@@ -194,7 +194,7 @@ bounds: { scan: { points: 2 } }
 
 #[test]
 #[ignore = "15 s"]
-fn a_unit_that_fails_is_one_sample() {
+fn failed_unit_affects_only_its_sample() {
     for (mode, expected) in [
         (1, "the program ended (signal: 6 (SIGABRT)"),
         (2, "the program did not answer within 2 s, and was ended"),
@@ -220,7 +220,7 @@ bounds: {{ scan: {{ points: 5 }} }}
 
 /// Messages with their locations: names, types, interfaces and units are those of the description.
 #[test]
-fn wrong_names_are_answered_with_near_ones() {
+fn wrong_names_are_reported_with_suggestions() {
     let model = "parameters: { kk: ± 5%, k: 200 kg, x: 3 m, unused: 1 }
 black_box:
   fmu: unit.fmu

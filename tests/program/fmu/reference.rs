@@ -129,7 +129,7 @@ fn euler<const N: usize>(
 }
 
 #[test]
-fn bounds_of_dahlquists_equation_hold_its_exponentials() {
+fn bounds_of_dahlquists_equation_contain_exponentials() {
     let model = "parameters: { k: ± 10% }
 black_box: { fmu: unit.fmu, interface: INTERFACE, outputs: { x: 1 } }
 simulation: { duration: 10, output_step: 0.1 }
@@ -144,7 +144,7 @@ bounds: { tolerance: 1e-4 }
 }
 
 #[test]
-fn bounds_of_van_der_pols_oscillator_hold_its_motions() {
+fn bounds_of_van_der_pols_oscillator_contain_its_motions() {
     let model = "parameters: { mu: ± 5% }
 black_box: { fmu: unit.fmu, interface: INTERFACE, outputs: { x0: 1, x1: 1 } }
 simulation: { duration: 20, output_step: 0.1 }
@@ -185,7 +185,7 @@ fn bounced(g: f64, e: f64, t: f64) -> Vec<f64> {
 }
 
 #[test]
-fn bounds_of_a_bouncing_ball_hold_its_motions() {
+fn bounds_of_a_bouncing_ball_contain_its_motions() {
     let model = "parameters: { e: ± 2%, g: ± 0.5% }
 black_box: { fmu: unit.fmu, interface: INTERFACE, outputs: { h: 1, v: 1 } }
 simulation: { duration: 3, output_step: 0.03 }
@@ -244,7 +244,7 @@ fn bounds_of(unit: &Unit, version: u32, variables: &str, model: &str) -> String 
 /// Stairs end their motion with the last row, by events whose times are known before.
 #[test]
 #[ignore = "2 s"]
-fn stairs_go_up_once_a_second() {
+fn stairs_rise_once_per_second() {
     for (version, interface) in
         [(2, "model_exchange"), (3, "model_exchange"), (2, "co_simulation"), (3, "co_simulation")]
     {

@@ -15,7 +15,7 @@ fn numbers(list: &Value) -> Vec<f64> {
 
 /// Bounds come in, the coarse first; those of the model are the ones of a run, and the report is there.
 #[test]
-fn bounds_come_in_the_coarse_first() {
+fn coarse_bounds_arrive_first() {
     let (place, mut session) = session(CRANK);
     let model = session.model(0);
     assert_eq!((model["name"].as_str(), model["parameters"][1]["name"].as_str()), (Some("crank"), Some("torque")));
@@ -33,7 +33,7 @@ fn bounds_come_in_the_coarse_first() {
 
 /// A slider's curve is the simulation at its values, to the last bit.
 #[test]
-fn a_slider_shows_the_sample_itself() {
+fn slider_shows_the_simulation_at_its_values() {
     let (place, mut session) = session(CRANK);
     let number = session.model(0)["number"].clone();
     let values = [0.2012, 0.29];
@@ -165,7 +165,7 @@ simulation: { duration: 1, output_step: 0.5 }
 
 /// A study that would take hours ends when the text changes, and the next one begins.
 #[test]
-fn a_change_begins_the_bounds_anew() {
+fn change_of_the_text_restarts_the_bounds() {
     let slow = CRANK.replace("chebyshev: { order: 2 }", "scan: { points: 3000 }");
     let (place, mut session) = session(&slow.replace("duration: 0.2", "duration: 4"));
     let path = place.path().canonicalize().unwrap().join("m.yaml");

@@ -138,7 +138,7 @@ fn session(text: &str) -> (Place, Session) {
 }
 
 #[test]
-fn only_the_own_page_with_its_token_is_answered() {
+fn only_the_studios_own_page_with_token_is_answered() {
     let (_place, session) = session(CRANK);
     let (base, host) = (session.base.clone(), format!("Host: {}\r\n", session.address));
     assert!(base.len() > 32, "{base}");
@@ -192,7 +192,7 @@ fn only_the_own_page_with_its_token_is_answered() {
 
 /// Requests that mean nothing are refused, and nothing in the program panics.
 #[test]
-fn requests_that_mean_nothing_are_refused() {
+fn meaningless_requests_are_refused() {
     let (_place, mut session) = session(CRANK);
     let number = session.model(0)["number"].clone();
     session.until("mechanism", |_| true);
@@ -243,7 +243,7 @@ fn requests_that_mean_nothing_are_refused() {
 }
 
 #[test]
-fn nothing_is_served_of_what_cannot_be() {
+fn unusable_files_are_refused() {
     let place = Place::new();
     let failed = |arguments: &str| place.run(&format!("studio --no-open {arguments}"), 2).1;
     assert!(failed("missing.yaml").contains("missing.yaml cannot be read: "));
@@ -259,7 +259,7 @@ fn nothing_is_served_of_what_cannot_be() {
 
 #[cfg(unix)]
 #[test]
-fn ctrl_c_ends_a_session_and_says_so() {
+fn ctrl_c_ends_a_session_with_a_message() {
     let (_place, mut session) = session(CRANK);
     session.until("bounds", |_| true);
     let id = session.process.id().to_string();

@@ -18,7 +18,7 @@ fn change(session: &Session, path: &Path, text: &str) {
 
 /// Errors have their locations and fixes, and the page continues.
 #[test]
-fn errors_are_told_and_a_text_that_is_right_again_is_bounded() {
+fn errors_are_reported_and_corrected_texts_bounded() {
     let (place, mut session) = session(CRANK);
     let path = place.path().canonicalize().unwrap().join("m.yaml");
     assert_eq!(open(&session, &path), json!({ "text": CRANK, "unsaved": false }));
@@ -51,7 +51,7 @@ fn errors_are_told_and_a_text_that_is_right_again_is_bounded() {
 }
 
 #[test]
-fn a_file_is_saved_when_asked_and_not_over_a_change_of_another() {
+fn files_are_saved_on_request_unless_changed_elsewhere() {
     let (place, session) = session(CRANK);
     let path = place.path().canonicalize().unwrap().join("m.yaml");
     open(&session, &path);
@@ -93,7 +93,7 @@ fn a_change_on_the_disk_is_followed() {
 
 /// Files of the model alone are read and written, and none that it may not name.
 #[test]
-fn no_file_but_those_of_the_model() {
+fn only_files_of_the_model_are_accessible() {
     let place = Place::new();
     let inside = place.path().canonicalize().unwrap().join("inside");
     fs::create_dir(&inside).unwrap();
