@@ -281,7 +281,7 @@ mod tests {
 
     /// Φ(−3) and Φ(−6) of tables; χ² of two degrees is exponential, and 18.47 the 99.9 % quantile of four.
     #[test]
-    fn tails_are_those_of_tables() {
+    fn tails_match_tables() {
         let near = |found: f64, wanted: f64| assert!((found / wanted - 1.0).abs() < 1e-4, "{found} {wanted}");
         near(tail(3.0), 1.349_898e-3);
         near(tail(6.0), 9.865_876e-10);

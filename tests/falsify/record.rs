@@ -89,7 +89,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_run_goes_on_where_a_line_was_cut_short() {
+    fn run_continues_after_a_truncated_line() {
         let score = Score {
             label: "chebyshev to a tolerance".to_owned(),
             rows: 21,

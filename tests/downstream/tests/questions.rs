@@ -29,7 +29,7 @@ fn near(found: f64, wanted: f64) {
 }
 
 #[test]
-fn bounds_verdicts_and_statistics_of_a_stack_are_those_of_sums() {
+fn bounds_and_statistics_of_a_stack_match_sums() {
     let result = stack().study().run().unwrap();
     let gap = result.output("gap").unwrap();
     let band = gap.band(Method::Chebyshev).unwrap();
@@ -100,7 +100,7 @@ fn end(study: Study) -> f64 {
 
 /// Coordinates, schemes, steps and rows are the study's: the motion stays, to the errors of the steps.
 #[test]
-fn a_motion_is_integrated_as_the_study_says() {
+fn study_sets_the_integration() {
     let plain = end(swing().study().nominal().step(1e-4));
     let studies = [
         swing().study().formulation(Formulation::Absolute).extrapolation(3),
@@ -138,7 +138,7 @@ fn settings_outside_of_their_ranges_are_errors() {
 }
 
 #[test]
-fn methods_are_those_of_the_model_with_what_the_study_says() {
+fn methods_of_a_study_override_those_of_the_model() {
     let methods = |study: Study| -> Vec<Method> {
         study.run().unwrap().output("angle").unwrap().bands().map(|band| band.method()).collect()
     };
@@ -162,7 +162,7 @@ fn methods_are_those_of_the_model_with_what_the_study_says() {
 }
 
 #[test]
-fn other_outputs_are_observed() {
+fn requested_outputs_are_observed() {
     let model = swing().observing(&[("tip", "rod.x + 0.1 m"), ("energy", "energy")]).unwrap();
     assert_eq!(model.outputs().collect::<Vec<_>>(), [("tip", "m"), ("energy", "J")]);
     assert_eq!(model.duration(), 0.4);
@@ -193,7 +193,7 @@ fn witnesses_are_replayed() {
 }
 
 #[test]
-fn a_costly_study_begins_only_where_it_is_allowed() {
+fn costly_study_needs_permission() {
     // 30³ simulations.
     let scan = |study: Study<'static>| study.nominal().scan(30).interrupted(&|| true);
     let error = scan(stack().study()).run().unwrap_err();
@@ -220,7 +220,7 @@ fn tolerances_that_meet_requirements_fill_the_margin() {
 }
 
 #[test]
-fn samples_and_sweeps_are_of_chosen_values() {
+fn samples_and_sweeps_take_chosen_values() {
     let model = stack();
     let names: Vec<&str> = model.uncertain().map(|(name, _)| name).collect();
     assert_eq!(names, ["a", "b", "c"]);
@@ -264,7 +264,7 @@ bounds: { chebyshev: { order: 3 } }
 }
 
 #[test]
-fn what_is_interrupted_says_so() {
+fn interrupted_run_reports_interruption() {
     let error = stack().study().interrupted(&|| true).sample(&[vec![0.03, 0.01, 0.051]]).unwrap_err();
     assert!(error.to_string().contains("interrupted"), "{error}");
 }
@@ -285,7 +285,7 @@ fn a_study_of_costs_is_written() {
 }
 
 #[test]
-fn a_certificate_is_checked_by_who_asked_for_it() {
+fn certificate_of_a_study_is_valid() {
     use mbint::certificate::{Certificate, check};
     let result = swing().study().certified().run().unwrap();
     let systems = result.bounds().certified.clone();

@@ -237,7 +237,7 @@ mod tests {
     /// The hidden range contains all values in the box, and its ends are attained: by a search of corners, faces and
     /// inner points.
     #[test]
-    fn hidden_ranges_are_those_of_the_boxes() {
+    fn hidden_ranges_match_those_of_the_boxes() {
         for (number, family) in [bump, ridge, corner, ring, stack].into_iter().cycle().take(40).enumerate() {
             let mut random = Random::new(5, number as u64);
             let term = family(&mut random, &Scale { place: 0, step: 1e-3, duration: 1.0 });
