@@ -36,7 +36,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn they_are_the_derivatives_values() {
+    fn slopes_match_symbolic_derivatives() {
         let mut g = Graph::new();
         let symbols: Vec<Expr> = (0..40).map(|index| g.symbol(&format!("x{index}"))).collect();
         let mut of = Vec::new();

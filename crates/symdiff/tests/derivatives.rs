@@ -144,7 +144,7 @@ fn difference_quotient(f: impl Fn(f64) -> f64) -> f64 {
 
 proptest! {
     #[test]
-    fn first_derivatives_are_those_of_the_values(tree in tree(), at in prop::array::uniform3(-0.9..0.9_f64)) {
+    fn first_derivatives_match_finite_differences(tree in tree(), at in prop::array::uniform3(-0.9..0.9_f64)) {
         let mut graph = Graph::new();
         let variables = ["x", "y", "z"].map(|name| graph.symbol(name));
         let root = build(&mut graph, &variables, &tree);

@@ -115,7 +115,7 @@ fn univariate_closed_forms() {
 }
 
 #[test]
-fn kinks_take_the_side_of_the_constant_term() {
+fn kinks_follow_the_sign_of_the_constant_term() {
     let mut jets = Calculator::new(1, 2);
     let at = |value: f64| vec![value, 2.0, -3.0];
     assert_eq!(jets.unary(Unary::Abs, &at(-1.5)), [1.5, -2.0, 3.0]);

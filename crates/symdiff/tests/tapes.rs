@@ -76,7 +76,7 @@ fn value(input: usize, lane: usize, seed: f64) -> f64 {
 
 /// Nodes that no lane of the tile wants are not computed, and lanes that want them get the same bits.
 #[test]
-fn blocks_are_skipped_where_no_lane_wants_them() {
+fn blocks_needed_by_no_lane_are_skipped() {
     let mut g = Graph::new();
     let (c, x, y) = (g.symbol("c"), g.symbol("x"), g.symbol("y"));
     let base = g.add(x, y);

@@ -48,7 +48,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn texts_are_those_of_c() {
+    fn texts_match_those_that_c_prints() {
         for (value, text) in [(1.0, "0x1p0"), (-0.1875, "-0x1.8p-3"), (0.1, "0x1.999999999999ap-4"), (0.0, "0")] {
             assert_eq!(write(value), text);
         }

@@ -46,7 +46,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn bounds_are_above_the_solution_and_end_where_there_is_none() {
+    fn bounds_exceed_the_solution_or_do_not_exist() {
         // x' = 3 x + 2 from 1 over 0.1: x = (1 + 2/3) e^0.3 − 2/3 = 1.5831.
         let s = bound(&Bounds::of(1, 1, &[3.0]), &[1.0], 0.1, &[2.0]).unwrap();
         assert!((1.5831..1.9).contains(&s[0]), "{s:?}");

@@ -258,7 +258,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_cut_off_is_radius() {
+    fn truncated_terms_become_radius() {
         let (wide, narrow) = (ModelSpace::new(2, 3), ModelSpace::new(2, 1));
         let mut model: Vec<f64> = (1..=wide.size()).map(|c| c as f64).collect();
         model[4] = -5.0;

@@ -134,7 +134,7 @@ mod tests {
 
     /// A smooth function is left as it was, and so is one that is constant.
     #[test]
-    fn a_smooth_function_is_left() {
+    fn smooth_function_is_left_unchanged() {
         let evaluate = |points: &[Vec<f64>]| -> Vec<f64> {
             points.iter().map(|xi| (2.0 * xi[0]).sin()).chain(points.iter().map(|_| 3.0)).collect()
         };

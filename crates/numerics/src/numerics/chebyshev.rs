@@ -100,7 +100,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn what_was_expanded_comes_back(c in prop::collection::vec(-1.0..1.0_f64, 24), xi in prop::array::uniform3(-1.0..=1.0_f64)) {
+        fn expansion_restores_coefficients(c in prop::collection::vec(-1.0..1.0_f64, 24), xi in prop::array::uniform3(-1.0..=1.0_f64)) {
             let basis = ChebyshevBasis::new(&[1, 3, 2], &[3, 4, 5]);
             let found = expand(&basis, |x| basis.evaluate(&c, x));
             for (found, c) in found.iter().zip(&c) {

@@ -137,7 +137,7 @@ mod tests {
     }
 
     #[test]
-    fn a_fit_of_a_polynomial_is_that() {
+    fn fit_of_a_polynomial_is_exact() {
         let times: Vec<f64> = (0..9).map(|row| 0.5 + 0.25 * f64::from(row)).collect();
         let values: Vec<f64> = times.iter().map(|t| 1.0 - t + 2.0 * t * t * t).collect();
         let line: Vec<f64> = times.iter().map(|t| 2.0 * t).collect();

@@ -208,7 +208,7 @@ mod tests {
     }
 
     #[test]
-    fn times_and_values_belong_together() {
+    fn times_and_values_are_inverse() {
         for speed in [20.0, -20.0] {
             let course = course(speed);
             let [a, b] = [5.0, 31.0].map(|turned: f64| turned.copysign(speed));
@@ -243,7 +243,7 @@ mod tests {
     }
 
     #[test]
-    fn what_rests_or_turns_back_is_no_measure() {
+    fn resting_or_reversing_course_is_no_measure() {
         let course = course(20.0);
         assert!(course.over(Range { lower: 5.0, upper: 5.0 }).is_none());
         assert!(course.over(Range { lower: 5.0, upper: 60.0 }).is_none());

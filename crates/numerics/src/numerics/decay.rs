@@ -95,7 +95,7 @@ mod tests {
     }
 
     #[test]
-    fn it_is_of_the_size_of_the_error() {
+    fn estimate_has_the_size_of_the_error() {
         for (n, width) in [(6, 1.0), (8, 0.7), (12, 0.4), (20, 0.2), (9, 0.5)] {
             for shift in [0.0, 0.3, -0.7] {
                 let (told, error) = told(n, |x| 1.0 / (1.0 + ((x - shift) / width).powi(2)));
@@ -122,7 +122,7 @@ mod tests {
 
     /// A bump's terms have either sign; a pole's add up in one corner, where they are more than that.
     #[test]
-    fn it_is_not_far_from_the_error_of_sparse_sets() {
+    fn estimate_of_sparse_sets_is_near_their_error() {
         for n in [8, 12, 20] {
             for (a, b) in [(0.5, 0.4), (0.7, 0.1), (-0.3, 0.6)] {
                 let (told, error) = told_of_sparse(n, |x, y| (-(x - a).powi(2) / 0.5 - (y - b).powi(2) / 0.8).exp());
@@ -137,7 +137,7 @@ mod tests {
     }
 
     #[test]
-    fn a_needle_is_seen_and_what_is_resolved_has_none() {
+    fn needle_has_a_large_estimate_and_smooth_function_none() {
         let (told_needle, _) = told(12, |x| 1.0 / (1.0 + ((x - 0.31) / 0.02).powi(2)));
         let (told_smooth, error) = told(12, |x| (2.0 * x).cos());
         assert!(told_needle > 0.05 && told_smooth < 1e-8 && error < 1e-8, "{told_needle} {told_smooth} {error}");

@@ -180,7 +180,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn points_of_sobol_are_those_of_scipy() {
+    fn sobol_points_match_scipy() {
         // scipy.stats.qmc.Sobol(d, scramble=False).random(n), axes 1, 2, 3, 8 and 64 of points 5 and 1000.
         let points = Design::Sobol.points(64, 1001, 0..1001);
         let at = |index: usize| [0, 1, 2, 7, 63].map(|axis| points[index][axis]);

@@ -45,7 +45,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_wave_is_held_at_its_peaks() {
+    fn envelope_of_a_wave_holds_its_peaks() {
         let wave: Vec<f64> = (0..200).map(|row| math::sin(0.1 * f64::from(row)).abs()).collect();
         let held = envelope(&wave);
         assert!(held[16..].iter().all(|value| *value > 0.99), "{held:?}");
@@ -68,7 +68,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_unknown_stays_unknown() {
+    fn unknown_values_stay_unknown() {
         let held = envelope(&[0.0, 1.0, f64::NAN, 1.0, 0.5, 1.0]);
         assert!(held[2].is_nan());
         assert_eq!(envelope(&[0.0; 4]), [0.0; 4]);

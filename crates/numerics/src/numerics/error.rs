@@ -194,7 +194,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_end_has_the_error_of_those_that_carry_it() {
+    fn error_of_an_end_is_that_of_its_samples() {
         let range = Range { lower: 0.0, upper: 1.0 };
         let direct = [0.0, 0.2, 0.5, 1.0];
         let halved = [0.03, 0.2, 7.0, 1.06];
@@ -207,7 +207,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_lost_stays_lost_and_what_is_unknown_is_lost() {
+    fn lost_rows_stay_lost_and_unknown_rows_are_lost() {
         let ranges = vec![Range { lower: 0.0, upper: 1.0 }; 6];
         let follows = BandError::new(&ranges, &[0.01; 6], &[0.0; 6], 1.0, None);
         assert_eq!(follows.unresolved_from(), None);
@@ -223,7 +223,7 @@ mod tests {
     }
 
     #[test]
-    fn a_band_without_width_is_not_lost_by_rounding_or_by_the_steps() {
+    fn rounding_and_steps_lose_no_band_without_width() {
         let ranges = vec![Range { lower: 0.3, upper: 0.3 }; 2];
         assert_eq!(BandError::new(&ranges, &[1e-16; 2], &[2e-3; 2], 1.0, None).unresolved, [false; 2]);
         assert_eq!(BandError::new(&ranges, &[1e-2; 2], &[2e-3; 2], 1.0, None).unresolved, [true; 2]);

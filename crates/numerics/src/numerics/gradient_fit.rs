@@ -201,7 +201,7 @@ mod tests {
 
     /// 1 + 2 ξ₀ − 3 ξ₁² + ξ₀ ξ₂ of eight parameters, from twelve samples where 45 terms would take 45 values.
     #[test]
-    fn derivatives_stand_for_samples() {
+    fn derivatives_replace_samples() {
         let value = |xi: &[f64]| 1.0 + 2.0 * xi[0] - 3.0 * xi[1] * xi[1] + xi[0] * xi[2];
         let slopes = |xi: &[f64]| {
             let mut slopes = vec![0.0; 8];

@@ -56,7 +56,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_polynomial_of_fifth_degree_is_met() {
+    fn polynomial_of_fifth_degree_is_interpolated_exactly() {
         let times: Vec<f64> = (0..20).map(|row| 0.1 * f64::from(row)).collect();
         let course = |t: f64| 1.0 - t + 0.3 * t.powi(5);
         for time in [0.0, 0.013, 0.3, 0.77, 1.899, 1.9] {
@@ -70,7 +70,7 @@ mod tests {
 
     /// |t − 1.03|: the polynomial through rows on both sides is off, and so is one of the parabolas.
     #[test]
-    fn a_kink_is_seen_from_its_sides() {
+    fn kink_is_interpolated_from_both_sides() {
         let times: Vec<f64> = (0..20).map(|row| 0.1 * f64::from(row)).collect();
         let course = |t: f64| (t - 1.03).abs();
         let sum = |weights: &[(usize, f64)]| weights.iter().map(|&(row, weight)| weight * course(times[row])).sum();

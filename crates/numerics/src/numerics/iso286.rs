@@ -63,7 +63,7 @@ mod tests {
     ];
 
     #[test]
-    fn the_table_is_the_formulas_rounded() {
+    fn table_matches_rounded_formulas() {
         let mut above = 0.0;
         for (most, _) in TABLE {
             for grade in GRADES {

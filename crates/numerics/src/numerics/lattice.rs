@@ -111,7 +111,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn ends_and_middle_are_points_and_spacings_are_those_between_them() {
+    fn lattice_has_points_at_ends_and_middle_with_spacings() {
         let lattice = Lattice::new(&[4, 8]);
         let points = lattice.points();
         assert_eq!((points.len(), &points[0], &points[22]), (45, &vec![-1.0, -1.0], &vec![0.0, 0.0]));
@@ -121,7 +121,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_resolved_has_small_residuals_and_peaks_are_found_on_faces_too() {
+    fn residuals_are_small_and_peaks_on_faces_are_found() {
         let lattice = Lattice::new(&[32, 16]);
         let f = |xi: &Vec<f64>| (4.0 * xi[0]).cos() + 0.2 * xi[1];
         let values: Vec<f64> = lattice.points().iter().map(f).collect();

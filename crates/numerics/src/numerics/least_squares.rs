@@ -70,7 +70,7 @@ mod tests {
 
     /// A line through three points of which one is off: errors without each are those of lines through the other two.
     #[test]
-    fn samples_that_are_left_out_are_told() {
+    fn leave_one_out_errors_are_exact() {
         let terms: Vec<Vec<f64>> = [0.0, 1.0, 2.0].iter().map(|x| vec![1.0, *x]).collect();
         let squares = LeastSquares::new(&terms, vec![1.0; 3]).unwrap();
         let (coefficients, left_out) = squares.fit(&[0.0, 1.0, 5.0]).unwrap();

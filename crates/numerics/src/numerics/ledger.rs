@@ -54,7 +54,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn all_values_are_within_and_what_is_not_a_number_does_not_count() {
+    fn ranges_contain_all_values_and_ignore_nan() {
         let ledger = Ledger::new(3, 2);
         // A line of the motion, then two outputs, of two samples in two rows.
         let rows = [9.0, 9.0, 1.0, 2.0, -1.0, f64::NAN, 9.0, 9.0, f64::NAN, f64::NAN, 5.0, 4.0];

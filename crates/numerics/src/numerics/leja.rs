@@ -88,7 +88,7 @@ mod tests {
     }
 
     #[test]
-    fn cardinal_polynomials_are_one_at_their_node_and_zero_at_those_before() {
+    fn cardinal_polynomials_vanish_at_earlier_nodes() {
         for level in 1..=TUNING.max_level {
             let c = &Level::of(level).cardinal;
             for other in 0..=level {
@@ -99,7 +99,7 @@ mod tests {
     }
 
     #[test]
-    fn a_level_predicts_what_it_has_the_degree_for() {
+    fn level_predicts_polynomials_of_lower_degree() {
         for level in 1..=24_u8 {
             let f = |level: u8, degree: i32| node(level).powi(degree);
             let prediction = &Level::of(level).prediction;

@@ -154,7 +154,7 @@ mod tests {
     }
 
     #[test]
-    fn limits_hold_or_are_missed_by_as_little_as_can_be() {
+    fn limits_hold_or_are_violated_by_the_least_amount() {
         let goal = [linear(0.0, &[1.0, 1.0])];
         let step = best_step(&goal, &[linear(1.0, &[-1.0, -2.0])], &[-1.0, -1.0], &[1.0, 1.0]);
         assert!((step[0] - 1.0).abs() < 1e-12 && step[1].abs() < 1e-12, "{step:?}");

@@ -125,7 +125,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_unknown_or_exact_needs_none() {
+    fn unknown_and_exact_rows_need_no_correction() {
         let unknown = Differences { halved: f64::NAN, ..Differences::default() };
         assert_eq!(corrections(&[unknown, Differences::default()], 0.37, None), [Correction::NONE; 2]);
     }

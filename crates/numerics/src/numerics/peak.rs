@@ -186,7 +186,7 @@ mod tests {
     }
 
     #[test]
-    fn corners_are_kept_and_peaks_beside_them_found() {
+    fn corners_are_kept_and_peaks_near_them_found() {
         let near = |found: Vec<f64>, x: f64, y: f64| (found[0] - x).abs() < 1e-12 && (found[1] - y).abs() < 1e-12;
         let corner = Peak::new(vec![1.0, -1.0], vec![0.1; 2]);
         assert!(near(vertex(&corner, |xi| xi[0] - 2.0 * xi[1] + xi[0] * xi[0], 1.0), 1.0, -1.0));
@@ -196,7 +196,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_a_number_moves_nothing() {
+    fn nan_moves_no_peak() {
         let peak = Peak::new(vec![0.5], vec![0.1]);
         assert_eq!(peak.vertex(&[1.0, f64::NAN, 2.0], 1.0), [0.5]);
     }
@@ -204,7 +204,7 @@ mod tests {
     proptest! {
         /// Where the quadratic has one peak in the box, from face to face leads to it.
         #[test]
-        fn faces_lead_to_the_best(
+        fn search_over_faces_finds_the_peak(
             slope in prop::array::uniform3(-3.0..3.0_f64),
             factor in prop::collection::vec(-1.0..1.0_f64, 9),
         ) {
@@ -222,7 +222,7 @@ mod tests {
 
         /// Whichever way it bends, no axis alone leads further up.
         #[test]
-        fn no_axis_leads_further(
+        fn no_single_axis_improves_the_peak(
             slope in prop::array::uniform5(-3.0..3.0_f64),
             bends in prop::collection::vec(-1.0..1.0_f64, 25),
         ) {
@@ -238,7 +238,7 @@ mod tests {
         }
 
         #[test]
-        fn quadratics_are_met_in_one_step(
+        fn quadratics_take_one_step(
             center in prop::array::uniform3(-0.3..0.3_f64),
             start in prop::array::uniform3(-0.3..0.3_f64),
             mixed in prop::array::uniform3(-0.4..0.4_f64),

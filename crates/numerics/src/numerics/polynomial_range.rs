@@ -252,7 +252,7 @@ mod tests {
     }
 
     #[test]
-    fn constants_are_exact_and_the_undefined_is_unknown() {
+    fn ranges_of_constants_are_exact_and_nan_is_unknown() {
         for kind in [RangeKind::Interval, RangeKind::Tight] {
             assert_eq!(range(&[2], kind, &[0.1, 0.0, -0.0]), Range { lower: 0.1, upper: 0.1 });
             assert_eq!(range(&[], kind, &[0.1]), Range { lower: 0.1, upper: 0.1 });
@@ -308,7 +308,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn rows_that_are_passed_over_have_no_extremum((orders, c) in polynomial()) {
+        fn skipped_rows_have_no_extremum((orders, c) in polynomial()) {
             let mut grid = ExtremaGrid::new(&orders, &intervals(&orders).unwrap());
             let found = grid.extrema(&c);
             let mut all = Range { lower: f64::INFINITY, upper: f64::NEG_INFINITY };
@@ -320,7 +320,7 @@ mod tests {
         }
 
         #[test]
-        fn tight_encloses_and_is_never_wider_than_the_terms((orders, c) in polynomial()) {
+        fn tight_range_encloses_within_the_range_of_terms((orders, c) in polynomial()) {
             let dense = dense(&orders, 61, &c);
             let tight = range(&orders, RangeKind::Tight, &c);
             let terms = range(&orders, RangeKind::Interval, &c);

@@ -137,7 +137,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn of_two_zeros_the_first_is_taken() {
+    fn first_of_two_zeros_is_returned() {
         let zeros = [0.0, -0.0_f64];
         for (a, b) in zeros.into_iter().flat_map(|a| zeros.map(|b| (a, b))) {
             assert_eq!([least(a, b), most(a, b)].map(f64::to_bits), [a, a].map(f64::to_bits));

@@ -147,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn dependent_rows_are_left_out_and_the_rest_is_orthonormal() {
+    fn basis_omits_dependent_rows_and_is_orthonormal() {
         let space = RowSpace::of(&rows(), 4);
         assert_eq!((space.independent.len(), space.null.len()), (2, 2));
         let all: Vec<&Vec<f64>> = space.basis.iter().chain(&space.null).collect();

@@ -178,7 +178,7 @@ mod tests {
     }
 
     #[test]
-    fn any_two_axes_meet_at_all_their_ends() {
+    fn corners_combine_all_ends_of_any_two_axes() {
         for k in [2, 4, 8, 15] {
             let corners = corners(k, 16);
             assert_eq!(corners.len(), 16.min(1 << k));
@@ -192,7 +192,7 @@ mod tests {
     }
 
     #[test]
-    fn no_parameters_make_one_sample_and_too_many_are_still_counted() {
+    fn grid_sizes_of_zero_and_too_many_parameters_are_counted() {
         assert_eq!(TensorGrid::full_factorial(&[]).len(), 1);
         assert_eq!(TensorGrid::full_factorial(&[30; 14]).len(), usize::MAX);
     }

@@ -241,7 +241,7 @@ mod tests {
     use proptest::prelude::*;
 
     #[test]
-    fn what_is_not_a_number_leaves_the_others_and_no_error() {
+    fn nan_keeps_the_other_values_and_makes_the_error_unknown() {
         let mut scan = ScanBounds::new(1, 3, &[6]);
         assert!(scan.range(0, 0).lower.is_nan());
         let nan = f64::NAN;
@@ -292,7 +292,7 @@ mod tests {
     }
 
     #[test]
-    fn half_of_a_jump_is_an_error() {
+    fn error_at_a_jump_is_half_of_it() {
         for at in [-0.95, 0.02, 0.5] {
             let (_, error) = of_line(|x| 0.1 * x + if x > at { 3.0 } else { 0.0 }, 15);
             assert!((1.0..=2.0).contains(&error), "{at}: {error}");
@@ -303,7 +303,7 @@ mod tests {
     }
 
     #[test]
-    fn a_narrow_peak_is_an_error_where_a_sample_stands_out() {
+    fn narrow_peak_at_an_outlying_sample_is_an_error() {
         for shift in [0.03, 0.05, 0.06] {
             let (range, error) = of_line(|x| 1.0 / (1.0 + ((x - shift) / 0.03).powi(2)), 20);
             assert!(error > 0.2 * range.upper, "{shift}: {range:?}, {error}");
@@ -312,7 +312,7 @@ mod tests {
 
     /// The peak lies nearer to the axis' end than to the next sample.
     #[test]
-    fn a_peak_beside_an_end_is_within_the_error() {
+    fn peak_near_an_end_is_within_the_error() {
         for (at, count) in [(-0.9, 3), (-0.6, 3), (-0.95, 5), (0.87, 5), (-0.99, 9)] {
             let (range, error) = of_line(|x| -(x - at).powi(2) + 0.1 * (x - at).powi(3), count);
             // The safety of errors is twofold.
@@ -325,7 +325,7 @@ mod tests {
 
     /// Every sample's reach, without a look at which of them may matter.
     #[test]
-    fn no_sample_that_matters_is_passed_over() {
+    fn no_relevant_sample_is_skipped() {
         for shift in [0.0, 0.3, 1.1] {
             let value = |i: usize, j: usize| {
                 let (x, y) = (0.25 * i as f64 - 1.0, 0.2 * j as f64 - 1.0);

@@ -253,7 +253,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn equispaced_points_meet_polynomials() {
+    fn equispaced_weights_reproduce_polynomials() {
         let f = |s: f64| 1.0 + s * (2.0 - s * s * s) + s.powi(7);
         for share in [0.0, 0.1, 1.0 / 7.0, 0.5, 6.0 / 7.0, 1.0, 1.001] {
             let weights: [f64; STEP_NODES] = equispaced_weights(share);
@@ -263,7 +263,7 @@ mod tests {
     }
 
     #[test]
-    fn polynomials_of_degree_seven_are_met() {
+    fn polynomials_of_degree_seven_are_exact() {
         let ends = [0.3, 1.0];
         let f = |s: f64| 1.0 + s * (2.0 - s * s * s) + s.powi(7);
         for share in [0.0, 0.1, 0.3, 0.31, 0.9, 1.0, 1.05] {
@@ -289,7 +289,7 @@ mod tests {
     }
 
     #[test]
-    fn motions_go_on_beyond_their_segments() {
+    fn motions_continue_beyond_their_segments() {
         let motions = grown();
         for time in [-0.3, 0.0, 0.45, 0.95, 1.3] {
             let BranchMotion { values, doubts } = motions.at(0, time, 2.0).unwrap();

@@ -128,7 +128,7 @@ mod tests {
     }
 
     #[test]
-    fn sums_are_told_from_products_and_what_changes_nothing_is_left_out() {
+    fn sums_are_separated_and_idle_parameters_omitted() {
         assert_eq!(groups(4, |x| x[0].sin() + x[1] * x[3] + x[2].exp()), [vec![0], vec![1, 3], vec![2]]);
         assert_eq!(groups(3, |x| x[0] * x[1] + 0.1 * x[1] * x[2]), [[0, 1, 2]]);
         assert_eq!(groups(3, |x| 1e3 + x[1].cos()), [[1]]);

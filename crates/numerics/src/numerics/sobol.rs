@@ -149,7 +149,7 @@ mod tests {
     }
 
     #[test]
-    fn what_does_not_vary_has_no_shares() {
+    fn constant_function_has_no_shares() {
         let basis = SobolDecomposition::new(&SparseBasis::tensor(&[1, 1]), &[]);
         assert_eq!(basis.indices(&[3.0, 0.0, 0.0, 0.0]), None);
         assert_eq!(basis.indices(&[3.0, 0.0, f64::NAN, 1.0]), None);
@@ -176,7 +176,7 @@ mod tests {
         }
 
         #[test]
-        fn shares_are_those_of_the_mean_square(c in prop::collection::vec(-1.0..1.0_f64, 12)) {
+        fn shares_match_quadrature(c in prop::collection::vec(-1.0..1.0_f64, 12)) {
             // Main effect of the first parameter by quadrature: the variance of the mean over the second.
             let basis = SparseBasis::tensor(&[3, 2]);
             let found = SobolDecomposition::new(&basis, &[]).indices(&c).unwrap();

@@ -312,7 +312,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn tensors_are_evaluated_as_elsewhere(
+        fn tensor_values_match_the_dense_basis(
             c in prop::collection::vec(-1.0..1.0_f64, 48),
             points in prop::collection::vec(prop::array::uniform3(-1.0..=1.0_f64), 1..20),
         ) {

@@ -162,7 +162,7 @@ mod tests {
     use proptest::prelude::*;
 
     #[test]
-    fn a_tensor_is_all_combinations_and_each_node_is_there_once() {
+    fn tensor_grid_has_each_combination_once() {
         let grid = SparseGrid::tensor(&[4, 0, 2]);
         assert_eq!(grid.len(), 15);
         let mut nodes: Vec<Vec<f64>> = (0..15).map(|index| grid.sample(index)).collect();
@@ -175,7 +175,7 @@ mod tests {
     }
 
     #[test]
-    fn a_simplex_has_all_of_a_total_degree() {
+    fn simplex_grid_has_all_levels_of_a_total_degree() {
         // C(14 + 2, 2), and of two orders those under a line.
         assert_eq!(SparseGrid::simplex(&[2; 14], 1000).map(|grid| grid.len()), Some(120));
         assert!(SparseGrid::simplex(&[2; 14], 119).is_none());
@@ -186,7 +186,7 @@ mod tests {
     }
 
     #[test]
-    fn candidates_have_all_that_are_smaller() {
+    fn candidates_keep_the_grid_downward_closed() {
         let mut grid = SparseGrid::new(&[2, 1]);
         assert_eq!(grid.candidates(), [[0, 1], [1, 0]]);
         grid.add(&[1, 0]);

@@ -162,7 +162,7 @@ mod tests {
     }
 
     #[test]
-    fn a_value_that_is_not_a_number_is_not_lost() {
+    fn nan_reaches_some_coefficient() {
         let grid = SparseGrid::tensor(&[4, 2]);
         let transform = SparseTransform::new(&grid);
         for hole in 0..grid.len() {

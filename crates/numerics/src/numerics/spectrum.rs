@@ -129,7 +129,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn variances_are_those_of_closed_forms() {
+    fn variances_match_closed_forms() {
         // ∫ (ν/n)⁻² = n² (1/a − 1/b); ∫ of a lag is an arc; of a vibration over all frequencies π f/(4 ζ).
         let road = Spectrum::Power { exponent: -2.0, at: 0.1 };
         let lag = Spectrum::Lag { corner: 5.0 };

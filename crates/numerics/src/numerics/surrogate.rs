@@ -92,7 +92,7 @@ mod tests {
     use crate::numerics::SparseWork;
 
     #[test]
-    fn both_kinds_give_back_a_polynomial_of_their_degree() {
+    fn both_surrogates_reproduce_polynomials_of_their_degree() {
         let f = |xi: &[f64]| 1.0 + 2.0 * xi[0] - xi[1] * xi[1] + 0.5 * xi[0] * xi[0] * xi[1];
         for surrogate in [Surrogate::tensor(&[3, 2], &[4, 5]), Surrogate::sparse(&SparseGrid::tensor(&[3, 2]))] {
             let values: Vec<f64> = surrogate.samples().iter().map(|xi| f(xi)).collect();

@@ -111,7 +111,7 @@ mod tests {
     use proptest::prelude::*;
 
     #[test]
-    fn squares_are_squares() {
+    fn even_powers_are_non_negative() {
         // 1 + ξ² in [1, 2], not [0, 2]; 1 − ξ₁ξ₂ in [0, 2].
         let c = [1.0, 0.0, 0.0, 1.0, 0.0, 0.0];
         assert_eq!(TaylorRange::new(2, 2, RangeKind::Interval).range(&c), Range { lower: 1.0, upper: 2.0 });
@@ -120,7 +120,7 @@ mod tests {
     }
 
     #[test]
-    fn tight_sees_that_terms_depend_on_each_other() {
+    fn tight_range_accounts_for_dependence_of_terms() {
         // ξ − ξ²/2 in [−3/2, 1/2]; term by term [−3/2, 1].
         let c = [0.0, 1.0, -0.5];
         assert_eq!(TaylorRange::new(1, 2, RangeKind::Interval).range(&c), Range { lower: -1.5, upper: 1.0 });
@@ -129,7 +129,7 @@ mod tests {
     }
 
     #[test]
-    fn the_undefined_is_unknown_and_constants_are_exact() {
+    fn ranges_of_nan_are_unknown_and_of_constants_exact() {
         for kind in [RangeKind::Interval, RangeKind::Tight] {
             let mut range = TaylorRange::new(2, 2, kind);
             for hole in 0..6 {

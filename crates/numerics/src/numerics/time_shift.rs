@@ -79,7 +79,7 @@ mod tests {
     }
 
     #[test]
-    fn a_shift_is_told_from_the_rest() {
+    fn shift_is_separated_from_the_remainder() {
         let late = TimeShift::of([sample(|_, v| -0.02 * v, 0.0), sample(|_, v| 0.01 * v, 1.0)].into_iter()).unwrap();
         assert!((late.shift - 0.02).abs() < 1e-12 && late.remainder < 1e-12, "{late:?}");
         // An amplitude that shrinks is no shift.
@@ -88,7 +88,7 @@ mod tests {
     }
 
     #[test]
-    fn what_does_not_turn_has_no_shift() {
+    fn non_oscillating_motion_has_no_shift() {
         let steady = |velocity: f64| vec![Turning { direct: 1.0, halved: 1.1, velocity }; 9];
         assert_eq!(TimeShift::of([steady(2.0)].into_iter()), None);
         assert_eq!(TimeShift::of([steady(0.0)].into_iter()), None);

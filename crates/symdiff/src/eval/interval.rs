@@ -293,7 +293,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_bounded_is_everything() {
+    fn unbounded_results_are_the_entire_line() {
         let around_zero = Interval::new(-1.0, 2.0);
         assert_eq!(Interval::point(1.0) / around_zero, Interval::ENTIRE);
         assert_eq!(around_zero.sqrt(), Interval::ENTIRE);

@@ -85,7 +85,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn they_are_those_of_the_standard_library_but_for_the_last_digits() {
+    fn functions_match_the_standard_library_but_last_digits() {
         for x in [1e-9_f64, 0.3, 0.7429, 1.0, 2.5, 40.0, 1e6] {
             let close =
                 |a: f64, b: f64| assert!((a - b).abs() <= 4.0 * f64::EPSILON * b.abs().max(1e-300), "{x}: {a} {b}");

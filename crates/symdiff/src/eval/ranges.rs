@@ -74,7 +74,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_pulse_between_two_points_is_seen() {
+    fn range_contains_a_pulse_between_two_points() {
         let mut graph = Graph::new();
         let t = graph.symbol("t");
         let (centre, width) = (graph.constant(0.5003), graph.constant(1e-5));
@@ -94,7 +94,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_in_the_box_may_be_anything() {
+    fn symbols_outside_the_box_are_unbounded() {
         let mut graph = Graph::new();
         let (t, x) = (graph.symbol("t"), graph.symbol("x"));
         let roots = [graph.sin(x), graph.mul(t, x)];

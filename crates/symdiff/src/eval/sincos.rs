@@ -158,7 +158,7 @@ mod tests {
     }
 
     #[test]
-    fn zeros_keep_their_sign_and_nothing_comes_of_the_infinite() {
+    fn zeros_keep_their_sign_and_infinities_give_nan() {
         assert_eq!(sin_cos(0.0).0.to_bits(), 0.0_f64.to_bits());
         assert_eq!(sin_cos(-0.0).0.to_bits(), (-0.0_f64).to_bits());
         assert_eq!(sin_cos(-0.0).1, 1.0);
@@ -175,7 +175,7 @@ mod tests {
         }
 
         #[test]
-        fn lanes_are_the_scalar_to_the_bit(x in prop::array::uniform8(prop_oneof![
+        fn lanes_equal_the_scalar_function_to_the_bit(x in prop::array::uniform8(prop_oneof![
             -10.0..10.0_f64, -1e6..1e6_f64, Just(0.0), Just(-0.0), Just(f64::NAN), Just(f64::INFINITY), any::<f64>(),
         ])) {
             let (sines, cosines) = sin_cos_lanes(&x);

@@ -248,7 +248,7 @@ mod tests {
 
     /// A derivative built on other derivatives costs only its new nodes, at any depth.
     #[test]
-    fn only_what_is_new_is_looked_at() {
+    fn derivatives_visit_only_new_nodes() {
         let mut g = Graph::new();
         let angles: Vec<Expr> = (0..60).map(|link| g.symbol(&format!("q{link}"))).collect();
         let mut tip = g.constant(0.0);

@@ -158,7 +158,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn jumps_are_no_steady_change() {
+    fn functions_with_jumps_do_not_change_steadily() {
         let mut g = Graph::new();
         let (x, y) = (g.symbol("x"), g.symbol("y"));
         let one = g.constant(1.0);

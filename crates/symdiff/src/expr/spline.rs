@@ -257,7 +257,7 @@ mod tests {
     }
 
     #[test]
-    fn it_interpolates_and_converges_with_order_four() {
+    fn spline_interpolates_and_converges_with_order_four() {
         let error = |n: i32| {
             let points: Vec<_> =
                 (0..=n).map(|i| f64::from(i) / f64::from(n) * std::f64::consts::PI).map(|x| (x, x.sin())).collect();
@@ -287,7 +287,7 @@ mod tests {
     }
 
     #[test]
-    fn a_periodic_one_begins_anew() {
+    fn periodic_spline_repeats_smoothly() {
         let wave = |x: f64| 2.0 + x.sin() + 0.3 * (2.0 * x).cos();
         let error = |n: i32| {
             let period = std::f64::consts::TAU;
@@ -313,7 +313,7 @@ mod tests {
     }
 
     #[test]
-    fn a_periodic_one_is_enclosed() {
+    fn periodic_spline_is_enclosed() {
         let spline = Spline::periodic(&[(0.5, 1.0), (1.0, -2.0), (2.25, 0.3), (3.0, 1.0)]).unwrap();
         for (lower, width) in [(0.6, 0.1), (2.9, 0.3), (-7.1, 0.9), (40.3, 2.4), (3.0, 0.2), (1.7, 9.0), (0.5, 2.5)] {
             for order in 0..=3 {
@@ -329,7 +329,7 @@ mod tests {
     }
 
     #[test]
-    fn a_line_stays_one() {
+    fn spline_through_a_line_is_the_line() {
         let spline = Spline::through(&[(-1.0, 3.0), (0.5, 0.0), (4.0, -7.0)]).unwrap();
         for x in [-9.0, -1.0, 0.1, 2.0, 4.0, 100.0] {
             assert!((spline.derivative(0, x) - (1.0 - 2.0 * x)).abs() < 1e-12 * (1.0 + x.abs()));
@@ -338,7 +338,7 @@ mod tests {
     }
 
     #[test]
-    fn symbolic_derivatives_and_jets_are_the_splines_own() {
+    fn symbolic_derivatives_and_jets_match_the_spline() {
         let (spline, mut g) = (sine(), Graph::new());
         let x = g.symbol("x");
         let value = g.unary(Unary::Spline(spline, 0), x);
@@ -362,7 +362,7 @@ mod tests {
     }
 
     #[test]
-    fn wrong_points_are_told() {
+    fn invalid_points_are_reported() {
         assert_eq!(Spline::through(&[(0.0, 1.0)]), Err(SplineError::TooFew));
         assert_eq!(Spline::through(&[(0.0, 1.0), (0.0, 2.0)]), Err(SplineError::NotAscending(1)));
         assert_eq!(Spline::through(&[(0.0, f64::NAN), (1.0, 2.0)]), Err(SplineError::NotFinite(0)));

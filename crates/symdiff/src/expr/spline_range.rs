@@ -139,7 +139,7 @@ mod tests {
     }
 
     #[test]
-    fn a_range_of_many_pieces_has_none() {
+    fn range_of_too_many_pieces_is_empty() {
         let spline = Spline::periodic(&POINTS).unwrap();
         assert!(spline.pieces_over(Interval::new(0.0, 100.0), 64).is_empty());
         assert!(spline.pieces_over(Interval::new(1e300, 1e300), 64).is_empty());
@@ -147,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn derivatives_of_splines_join_but_for_rounding_and_those_of_lines_jump() {
+    fn spline_derivatives_are_continuous_to_rounding() {
         for spline in [Spline::through(&POINTS), Spline::periodic(&POINTS)].map(Result::unwrap) {
             for order in 0..=2 {
                 assert!(spline.rounding_jumps(order).unwrap() < 1e-13, "order {order}");

@@ -7,7 +7,7 @@ fn value(text: &str) -> f64 {
 }
 
 #[test]
-fn precedence_and_associativity_are_those_of_mathematics() {
+fn precedence_and_associativity_follow_mathematics() {
     assert_eq!(value("1 + 2*3"), 7.0);
     assert_eq!(value("10 - 4 - 3"), 3.0);
     assert_eq!(value("2^3^2"), 512.0);
@@ -22,7 +22,7 @@ fn precedence_and_associativity_are_those_of_mathematics() {
 }
 
 #[test]
-fn functions_of_steps_and_pieces_are_those_of_other_languages() {
+fn functions_with_steps_have_their_usual_values() {
     for (text, wanted) in [
         ("floor(2.5) + floor(-2.5)", -1.0),
         ("ceil(2.5) + 10*ceil(-2.5)", -17.0),
@@ -54,7 +54,7 @@ fn built(text: &str, x: f64) -> f64 {
 }
 
 #[test]
-fn comparisons_are_one_where_they_hold() {
+fn comparisons_are_one_if_true() {
     for (text, wanted) in [
         ("1 < 2", 1.0),
         ("2 < 1", 0.0),
@@ -100,7 +100,7 @@ fn comparisons_are_one_where_they_hold() {
 }
 
 #[test]
-fn habits_of_other_languages_are_answered() {
+fn notations_of_other_languages_give_help() {
     for (text, wanted) in [
         ("0,5", "decimals stand behind a point: `0.5`"),
         ("0.49..0.51", "an interval is written `[0.1, 0.2]`"),
@@ -113,7 +113,7 @@ fn habits_of_other_languages_are_answered() {
 }
 
 #[test]
-fn units_are_the_callers() {
+fn units_are_read_by_the_caller() {
     let unit = |value: f64, text: &str| match text.strip_prefix("mm") {
         Some(_) => Ok(Quantity { value: value / 1e3, mark: 7, length: 2 }),
         None => Err(SyntaxError { message: "no unit".to_owned(), span: 0..1, help: None }),
@@ -134,14 +134,14 @@ fn a_floor_is_a_name_unless_it_is_called() {
 }
 
 #[test]
-fn names_keep_their_dots_and_places() {
+fn names_keep_dots_and_spans() {
     let formula = Formula::parse("crank.angle + rod.C.y*l1").unwrap();
     let names: Vec<_> = formula.names().collect();
     assert_eq!(names, [("crank.angle", 0..11), ("rod.C.y", 14..21), ("l1", 22..24)]);
 }
 
 #[test]
-fn errors_say_where() {
+fn errors_have_spans() {
     let span = |text: &str| Formula::parse(text).unwrap_err().span;
     assert_eq!(span("1 + * 2"), 4..5);
     assert_eq!(span("1 +"), 3..3);

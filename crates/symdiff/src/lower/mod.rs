@@ -321,7 +321,7 @@ mod tests {
     }
 
     #[test]
-    fn outputs_may_replace_inputs_that_others_still_read() {
+    fn outputs_may_replace_inputs_still_in_use() {
         let mut g = Graph::new();
         let (x, y) = (g.symbol("x"), g.symbol("y"));
         let (sum, difference) = (g.add(x, y), g.sub(x, y));

@@ -35,7 +35,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_divides_often_is_inverted_once() {
+    fn repeated_divisor_is_inverted_once() {
         let mut g = Graph::new();
         let [h, x, y, z] = ["h", "x", "y", "z"].map(|name| g.symbol(name));
         let three = g.constant(3.0);

@@ -83,7 +83,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn ends_are_told_apart_from_values_beyond_them() {
+    fn ranges_separate_ends_from_values_beyond_them() {
         let space = ModelSpace::new(2, 3);
         let ranges = Ranges::new(&space);
         let monomials = space.jets().monomials();

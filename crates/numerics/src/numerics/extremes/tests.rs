@@ -6,7 +6,7 @@ fn range(k: usize, intervals: usize, f: impl Fn(&[f64]) -> f64) -> Extent {
 }
 
 #[test]
-fn a_peak_beside_an_edge_is_found() {
+fn peak_near_an_edge_is_found() {
     // Between the last two points of the grid.
     let found = range(1, 8, |xi| (xi[0] - 0.93).powi(2) + 0.1 * (xi[0] - 0.93).powi(3));
     assert!(found.range.lower.abs() < 1e-9 && found.gap < 1e-6, "{found:?}");
@@ -48,7 +48,7 @@ fn a_range_full_of_turns_has_no_gap() {
 }
 
 #[test]
-fn nothing_uncertain_and_the_unknown() {
+fn range_without_parameters_is_a_value_and_nan_is_unknown() {
     assert_eq!(range(0, 8, |_| 3.0).range, Range { lower: 3.0, upper: 3.0 });
     assert!(range(1, 8, |xi| if xi[0] == 0.0 { f64::NAN } else { 1.0 }).range.lower.is_nan());
 }
@@ -82,7 +82,7 @@ fn every_crest_is_climbed_to_its_top() {
 }
 
 #[test]
-fn rounding_is_not_looked_for() {
+fn search_stops_at_rounding_errors() {
     let seen = std::cell::Cell::new(0);
     // Noise of some units of rounding, and a function that is not known better than to a thousandth of its size.
     let noise = |xi: f64| (1e7 * xi).sin();

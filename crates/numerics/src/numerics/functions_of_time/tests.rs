@@ -35,7 +35,7 @@ fn tried(ratio: f64, limits: impl Fn(usize) -> [f64; 2], ends: &[f64], functiona
 }
 
 #[test]
-fn chains_of_values_are_the_best_of_all() {
+fn chains_of_values_are_optimal() {
     for seed in 0..12 {
         let ends = [0.1, 0.2, 0.35, 0.5, 0.6, 0.8, 1.0];
         let functional = kernel(ends.len(), seed);
@@ -69,7 +69,7 @@ fn a_rate_beyond_all_limits_does_not_limit() {
 }
 
 #[test]
-fn of_a_bounded_rate_the_integral_of_the_step_response_counts() {
+fn bounded_rate_gives_the_integral_of_the_step_response() {
     // y(T) = ∫ u dτ with |u̇| ≤ 1: T²/2, of all slopes 1.
     let ends: Vec<f64> = (1..=50).map(|end| 0.1 * f64::from(end)).collect();
     let functional: Vec<Cell> = (0..50).map(|cell| [0.1, 0.1 * (begin(&ends, cell) + 0.05)]).collect();
@@ -78,7 +78,7 @@ fn of_a_bounded_rate_the_integral_of_the_step_response_counts() {
 }
 
 #[test]
-fn what_is_held_has_the_sign_of_its_period() {
+fn held_function_has_the_sign_of_its_period() {
     let ends = [0.1, 0.2, 0.3, 0.4, 0.5];
     let functional = [[1.0, 0.0], [-3.0, 0.0], [1.0, 0.0], [1.0, 0.0], [-0.5, 0.0]];
     let Worst { value: best, function, .. } = FunctionClass::Held(0.2).worst(&ends, &functional);
@@ -97,7 +97,7 @@ impl Levels for Vec<Cell> {
 }
 
 #[test]
-fn cells_cost_no_more_than_a_straight_kernel_loses_in_them() {
+fn loss_of_a_cell_matches_that_of_a_straight_kernel() {
     // h = τ − z over four cells: cells have the integrals k − 1/2 − z, and lose (z − 2)² or (3 − z)² of it.
     let ends = [1.0, 2.0, 3.0, 4.0];
     for z in [2.0, 2.2, 2.5, 2.9] {
@@ -112,7 +112,7 @@ fn cells_cost_no_more_than_a_straight_kernel_loses_in_them() {
 }
 
 #[test]
-fn chains_between_limits_that_move_are_the_best_of_all() {
+fn chains_between_moving_limits_are_optimal() {
     let ends = [0.1, 0.2, 0.35, 0.5, 0.6, 0.8, 1.0];
     // Lengths of cells times the rate are multiples of the grid's 0.02, and so are limits.
     let paths: [[f64; 8]; 3] = [
@@ -181,7 +181,7 @@ fn best_of_levels(functional: &[Cell], points: usize, holds: impl Fn(&[f64]) -> 
 }
 
 #[test]
-fn functions_of_a_mean_are_the_best_of_all_levels() {
+fn functions_of_a_given_mean_are_optimal() {
     let ends = [0.1, 0.2, 0.4, 0.5, 0.7];
     let lengths = [0.1, 0.1, 0.2, 0.1, 0.2];
     for (seed, mean) in [(0, 0.0), (1, 1.0), (2, -3.0), (3, 5.0), (4, -7.0), (5, 7.0), (6, 2.0)] {
@@ -233,7 +233,7 @@ fn a_limited_energy_follows_the_kernel() {
 }
 
 #[test]
-fn the_worst_of_a_band_is_a_sine_at_its_peak() {
+fn worst_function_of_a_band_is_a_sine_at_its_peak() {
     // ∫ sin 5τ cos(ωτ + φ) over 4 s: |∫ sin 5τ exp(iωτ)| is largest near 5 rad/s.
     let ends: Vec<f64> = (1..=800).map(|end| 0.005 * f64::from(end)).collect();
     let moments = |end: f64| {

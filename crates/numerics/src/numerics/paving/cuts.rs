@@ -77,7 +77,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn volumes_below_planes_are_those_of_simplices() {
+    fn volumes_below_planes_match_simplices() {
         // x + y ≤ 1/2: 1/8; x + y + z ≤ 1: 1/6; x ≥ 3/4: 1/4; x − y ≤ 0: 1/2.
         let cases = [
             (vec![1.0, 1.0], 0.5, 0.125),

@@ -186,7 +186,7 @@ mod tests {
     }
 
     #[test]
-    fn the_area_of_a_disc_lies_between_both() {
+    fn area_of_a_disc_lies_between_both_volumes() {
         let paving = pave(&disc(0.7), LIMITS, &|| false);
         let [inner, outer] = paving.volumes();
         let exact = std::f64::consts::PI * 0.49 / 4.0;

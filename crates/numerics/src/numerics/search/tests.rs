@@ -43,7 +43,7 @@ fn corners_are_exact() {
 }
 
 #[test]
-fn inside() {
+fn extremes_inside_the_box_are_found() {
     for k in [8, 20] {
         let centre = |i: f64| 0.7 * (1.7 * i).sin();
         let bowl = |xi: &[f64]| -> f64 {
@@ -81,7 +81,7 @@ fn coupled_quadratics() {
 }
 
 #[test]
-fn what_is_not_a_number_is_unknown() {
+fn range_with_nan_is_unknown() {
     let (found, _) = search(3, &[], &[&|xi| if xi[0] > 0.9 { f64::NAN } else { xi[1] }, &|_| 1.0]);
     assert!(found[0].range.lower.is_nan() && found[0].range.upper.is_nan());
     assert_eq!(found[1].range, Range { lower: 1.0, upper: 1.0 });

@@ -79,7 +79,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_is_refused() {
+    fn indefinite_correlations_are_refused() {
         let matrix = vec![vec![1.0, 0.9, -0.9], vec![0.9, 1.0, 0.9], vec![-0.9, 0.9, 1.0]];
         assert_eq!(Copula::new(&matrix), Err(NotPositive));
         assert!(Copula::new(&[vec![1.0, 0.0], vec![0.0, 1.0]]).unwrap().is_independent());

@@ -302,7 +302,7 @@ mod tests {
     }
 
     #[test]
-    fn quantiles_are_inverse_and_moments_are_those_of_quantiles() {
+    fn quantiles_invert_laws_and_have_their_moments() {
         for law in laws() {
             let count = 200_000;
             let (mut sum, mut squares) = (0.0, 0.0);

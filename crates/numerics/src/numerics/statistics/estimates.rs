@@ -177,7 +177,7 @@ mod tests {
     /// The mean of lattice points is known far better than that of the same number of random ones: nothing is to be
     /// divided by one less than their number, as if it were not.
     #[test]
-    fn deviations_of_evenly_spread_points_lie_within_their_confidence() {
+    fn deviations_of_lattice_points_lie_within_confidence() {
         let jump: fn(&[f64]) -> f64 = |p| if p[0] + 0.6 * p[1] > 0.8 { 1.0 } else { -1.0 };
         let along: fn(&[f64]) -> f64 = |p| 3.0_f64.sqrt() * (2.0 * p[0] - 1.0);
         let wave: fn(&[f64]) -> f64 = |p| 2.0_f64.sqrt() * (std::f64::consts::TAU * (2.0 * p[0] + p[1])).sin();
@@ -203,7 +203,7 @@ mod tests {
     }
 
     #[test]
-    fn quantiles_of_few() {
+    fn quantiles_of_few_samples_are_interpolated() {
         let shares = [0.0, 0.125, 0.25, 0.5, 1.0];
         let found = |values: &mut [f64]| {
             let mut replicates = Replicates::new(&shares);

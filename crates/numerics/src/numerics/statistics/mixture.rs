@@ -173,7 +173,7 @@ mod tests {
     }
 
     #[test]
-    fn quantiles_of_few_are_those_without_weights() {
+    fn quantiles_of_equal_weights_match_unweighted_ones() {
         let values = [4.0, 1.0, 3.0, 2.0];
         let found = [0.0, 0.125, 0.25, 0.5, 1.0].map(|p| weighted_quantile(&values, &[1.0; 4], p));
         assert_eq!(found, [1.0, 1.0, 1.5, 2.5, 4.0]);

@@ -92,7 +92,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn intervals_hold_the_truth_as_often_as_they_say() {
+    fn intervals_contain_the_truth_at_their_confidence() {
         let (runs, count) = (400, 800);
         let mut held = [0; 4];
         for run in 0..runs {

@@ -48,7 +48,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn means_are_those_of_integrals() {
+    fn means_match_integrals() {
         // The mean of Π (1 + (xᵢ − ½)) over the cube is 1.
         let (k, count) = (6, 1 << 12);
         let of_replicate = |number: usize| {

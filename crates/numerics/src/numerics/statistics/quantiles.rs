@@ -85,7 +85,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn prepared_quantiles_are_those_of_the_law() {
+    fn prepared_quantiles_match_the_law() {
         let table = vec![(-1.0, 0.0), (0.0, 2.0), (1.0, 2.0), (3.0, 1.0)];
         let laws = [
             Distribution::Beta { alpha: 0.9, beta: 2.2, lower: -1.0, upper: 3.0 },
@@ -108,7 +108,7 @@ mod tests {
 
     /// By scipy 1.17.1: `beta.ppf` and `lognorm.ppf`.
     #[test]
-    fn prepared_quantiles_are_those_of_scipy() {
+    fn prepared_quantiles_match_scipy() {
         let shares = [1e-6, 0.001, 0.05, 0.5, 0.95, 0.999];
         let beta = |alpha, beta| Distribution::Beta { alpha, beta, lower: 0.0, upper: 1.0 };
         let lognormal = Distribution::Lognormal { median: 2e5, sigma: 0.1, lower: 0.0, upper: f64::INFINITY };

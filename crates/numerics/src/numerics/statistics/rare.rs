@@ -239,7 +239,7 @@ mod tests {
     }
 
     #[test]
-    fn tails_that_no_sample_would_see() {
+    fn tails_beyond_all_samples_are_estimated() {
         for beta in [4.0, 5.5, 7.0] {
             // Φ(−β) along one direction, and twice that where both sides fail.
             let direction = [0.6, 0.0, 0.8];
@@ -254,7 +254,7 @@ mod tests {
     }
 
     #[test]
-    fn where_nothing_fails_there_is_no_share() {
+    fn no_failure_gives_no_share() {
         assert_eq!(found(&[vec![1.0, 1.0]], &|_| 1.0), None);
     }
 
@@ -322,14 +322,14 @@ mod tests {
     }
 
     #[test]
-    fn sets_about_the_middle() {
+    fn intervals_of_random_sets_contain_the_truth() {
         let (held, stated) = held(10);
         assert!(stated >= 9 && held + 1 >= stated, "{held} of {stated}");
     }
 
     #[test]
     #[ignore = "200 draws take a minute"]
-    fn two_hundred_sets_about_the_middle() {
+    fn intervals_of_two_hundred_sets_contain_the_truth() {
         let (held, stated) = held(200);
         assert!(stated >= 180 && 100 * held >= 95 * stated, "{held} of {stated}");
     }

@@ -189,7 +189,7 @@ mod tests {
 
     /// Digits by mpmath, as the difference from the `f64`: the constants of the series, and values of functions.
     #[test]
-    fn values_are_those_of_forty_digits() {
+    fn values_match_mpmath_with_forty_digits() {
         let at = |function: Unary, a: f64| unary(function, a.into());
         for (found, high, low) in [
             (at(Unary::Exp, 1.0), std::f64::consts::E, 1.445_646_891_729_250_2e-16),
@@ -230,7 +230,7 @@ mod tests {
 
     /// Every function agrees with that of `f64` to its digits.
     #[test]
-    fn functions_are_those_of_the_other_tapes() {
+    fn functions_match_those_of_f64_tapes() {
         let table = Spline::through(&[(-9.0, 1.0), (-1.0, -3.0), (0.5, 2.0), (3.0, 2.5), (8.0, 0.0)]).unwrap();
         let wave = Spline::periodic(&[(0.0, 1.0), (0.5, 2.0), (1.5, 1.0)]).unwrap();
         let mut functions = vec![Unary::Neg, Unary::Sin, Unary::Cos, Unary::Tan, Unary::Asin, Unary::Acos, Unary::Atan];

@@ -174,7 +174,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_finite_stays_so() {
+    fn infinities_and_nan_are_kept() {
         assert_eq!((DoubleDouble::ONE / 0.0.into()).to_f64(), f64::INFINITY);
         assert!(DoubleDouble::from(-1.0).sqrt().to_f64().is_nan());
         assert_eq!((DoubleDouble::from(1e300) * 1e300.into()).to_f64(), f64::INFINITY);

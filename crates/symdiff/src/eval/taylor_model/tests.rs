@@ -15,7 +15,7 @@ fn value(space: &ModelSpace, a: &[f64], xi: &[f64]) -> f64 {
 
 proptest! {
     #[test]
-    fn models_enclose_what_they_are_computed_from(
+    fn models_enclose_functions_of_their_members(
         order in 1..8_usize,
         (a, b) in (prop::array::uniform3(-0.6..0.6_f64), prop::array::uniform3(-0.6..0.6_f64)),
         (e, f) in (prop_oneof![Just(0.0), 0.0..0.1_f64], prop_oneof![Just(0.0), 0.0..0.1_f64]),
@@ -119,7 +119,7 @@ fn radii_of_every_smooth_function_fall_with_the_order() {
 }
 
 #[test]
-fn a_knot_costs_the_third_power_of_what_lies_beyond() {
+fn radius_at_a_knot_grows_with_the_third_power() {
     let spline = Spline::through(&[(0.0, 1.0), (1.0, -2.0), (2.0, 0.3), (3.0, 5.0)]).unwrap();
     let radius = |beyond: f64| {
         let space = ModelSpace::new(1, 4);
@@ -156,7 +156,7 @@ fn radii_fall_with_the_order() {
 }
 
 #[test]
-fn what_cannot_be_bounded_is_unknown() {
+fn unbounded_functions_have_infinite_radius() {
     let space = ModelSpace::new(1, 3);
     let mut scratch = ModelScratch::new(&space);
     let (mut a, mut out) = (vec![0.0; space.size()], vec![0.0; space.size()]);

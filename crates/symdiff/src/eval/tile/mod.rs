@@ -290,7 +290,7 @@ mod tests {
     }
 
     #[test]
-    fn every_width_and_instruction_set_gives_the_bits_of_direct_evaluation() {
+    fn all_widths_and_instruction_sets_give_equal_bits() {
         let (g, inputs, outputs) = sample();
         let lowered = lower(&g, &inputs, 0, 2, std::slice::from_ref(&outputs));
         let roots: Vec<Expr> = outputs.iter().map(|&(expr, _)| expr).collect();
