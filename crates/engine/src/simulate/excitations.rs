@@ -155,7 +155,7 @@ mod tests {
     }
 
     #[test]
-    fn a_jump_of_a_force_excites_and_what_is_smooth_does_not() {
+    fn force_jump_excites_a_mode_and_smooth_force_does_not() {
         assert!(watched(|t| 30.0 * math::sin(7.0 * t)).is_empty());
         let found = watched(|t| 30.0 * math::sin(7.0 * t) + if t > 1.2345 { 50.0 } else { 0.0 });
         assert!(found.len() == 1 && (found[0].time - 1.24).abs() < 1e-9, "{found:?}");
@@ -163,7 +163,7 @@ mod tests {
     }
 
     #[test]
-    fn what_short_steps_leave_behind_excites() {
+    fn vibration_after_short_steps_is_an_excitation() {
         let mut watch = Watch::default();
         let rest = State { position: 0.0, velocity: 0.3, acceleration: 0.0 };
         watch.look(rest, 0.1, 1e3, false);

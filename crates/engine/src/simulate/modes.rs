@@ -283,7 +283,7 @@ mod tests {
     use crate::compile::Scheme;
 
     #[test]
-    fn fast_waves_are_damped_as_the_spectral_radius_says() {
+    fn damping_of_fast_modes_equals_the_spectral_radius() {
         for alpha in [-0.05, -0.1, -0.3] {
             let scheme = Scheme::Hht { alpha };
             let radius = math::exp(-decay_by_scheme(scheme.coefficients(), 1e4));

@@ -112,7 +112,7 @@ mod tests {
     }
 
     #[test]
-    fn steps_are_divided_at_the_instants_in_them_only() {
+    fn steps_are_divided_only_at_instants_within_them() {
         assert_eq!(divided(&[], 0.1, 0.7), [(0.1, 0.7)]);
         // Ends and beginnings may be off by rounding.
         assert_eq!(divided(&[0.1], 0.1, 0.1 + 0.2), [(0.1, 0.1 + 0.2)]);
@@ -126,7 +126,7 @@ mod tests {
     }
 
     #[test]
-    fn the_parts_of_a_step_are_the_step() {
+    fn parts_of_a_step_add_up_to_the_step() {
         for (periods, h, end) in [(&[0.3, 0.25][..], 1.0, 1.0), (&[0.007], 0.02, 12.345), (&[1.0], 0.5, 0.5)] {
             let parts = divided(periods, h, end);
             assert_eq!(parts.last().unwrap().1, end);

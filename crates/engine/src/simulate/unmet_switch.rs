@@ -360,7 +360,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn cubics_are_met_between_rows() {
+    fn cubics_are_interpolated_exactly() {
         let f = |t: f64| 1.0 - 2.0 * t + 0.5 * t * t - 3.0 * t.powi(3);
         let slope = |t: f64| -2.0 + t - 9.0 * t * t;
         let [value, rate] = hermite([f(0.2), f(0.6)], [slope(0.2), slope(0.6)], 0.4, 0.3);
@@ -368,7 +368,7 @@ mod tests {
     }
 
     #[test]
-    fn lattices_hold_the_ends() {
+    fn lattices_contain_both_ends() {
         let points = lattice(&[2, 4]);
         assert_eq!((points.len(), &points[0], &points[14]), (15, &vec![-1.0, -1.0], &vec![1.0, 1.0]));
     }

@@ -148,7 +148,7 @@ mod tests {
     }
 
     #[test]
-    fn a_combination_has_as_many_parameters_as_act_through_it() {
+    fn combinations_group_parameters_that_act_through_them() {
         assert_eq!(found("b.x"), [vec![0, 1], vec![2, 3, 4]]);
         // Functions of it do no harm, and other combinations of the same parameters do.
         assert_eq!(found("p*q*b.x"), [vec![0, 1], vec![2, 3, 4]]);
@@ -159,7 +159,7 @@ mod tests {
     }
 
     #[test]
-    fn a_jump_has_no_values_between() {
+    fn combinations_exclude_functions_that_jump() {
         let mut m = Model::new();
         m.interval("p", [1.0, 1.5, 2.0]);
         m.interval("q", [1.0, 1.5, 2.0]);

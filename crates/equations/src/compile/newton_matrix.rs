@@ -317,7 +317,7 @@ mod tests {
 
     /// The whole matrix, −∂Q/∂λ of friction included, against differences of the residual.
     #[test]
-    fn the_matrix_is_the_residuals_jacobian_where_forces_depend_on_reactions() {
+    fn matrix_is_the_jacobian_if_forces_depend_on_reactions() {
         let mut m = Model::new();
         m.body("rod", "2", "0.1", "xya", &[("pin", "-0.3", "0.1"), ("tip", "0.4", "0")]);
         m.body("bob", "1", "0.1", "xya", &[]);

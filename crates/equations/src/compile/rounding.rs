@@ -41,7 +41,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_difference_is_known_to_what_its_terms_are() {
+    fn rounding_error_of_a_difference_is_that_of_its_terms() {
         let mut graph = Graph::new();
         let [a, b] = ["a", "b"].map(|name| graph.symbol(name));
         let (cos_a, cos_b) = (graph.cos(a), graph.cos(b));

@@ -34,7 +34,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_smallest_stands_for_all() {
+    fn smallest_member_represents_its_set() {
         let mut sets = Sets::new(5);
         assert!(sets.join(4, 2) && sets.join(1, 4));
         assert!(!sets.join(2, 1));

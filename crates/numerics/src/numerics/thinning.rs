@@ -87,7 +87,7 @@ mod tests {
     }
 
     #[test]
-    fn the_number_of_rows_is_limited_and_the_error_returned() {
+    fn thinning_limits_the_rows_and_states_the_error() {
         let times: Vec<f64> = (0..=100).map(f64::from).collect();
         let parabola: Vec<f64> = times.iter().map(|time| time * time).collect();
         let thinning = Thinning { samples: vec![&parabola], weights: &[2.0] };

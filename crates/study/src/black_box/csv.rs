@@ -115,7 +115,7 @@ mod tests {
     }
 
     #[test]
-    fn tables_are_those_of_samples() {
+    fn tables_are_written_and_read_per_sample() {
         assert_eq!(table(&questions(), &[&[0.1], &[1e-9]]), "l\n0.1\n1e-9\n");
         let (mut table, mut answers) = (Table::of(3), Answers::of(3));
         let lines = ["sample,l,t,x", "1,9,0,1.5", "0,9,0,1", "1,9,0.5,2.5", "0,9,0.4,2", "2,9,0,3"];

@@ -138,7 +138,7 @@ mod tests {
     }
 
     #[test]
-    fn points_are_lines_and_answers_too() {
+    fn points_and_answers_are_one_per_line() {
         let text = lines(&questions(), 7, &[&[0.1, 2.0], &[0.2, 1e-9]]);
         let expected = "{\"point\":7,\"left\":1,\"parameters\":{\"l\":0.1,\"m\":2.0},\"times\":[0.0,0.5]}\n\
                         {\"point\":8,\"left\":0,\"parameters\":{\"l\":0.2,\"m\":1e-9},\"times\":[0.0,0.5]}\n";
@@ -157,7 +157,7 @@ mod tests {
     }
 
     #[test]
-    fn answers_that_are_none_say_why() {
+    fn invalid_answers_give_reasons() {
         let why = |line: &str| {
             let mut answers = Answers::of(1);
             take(&questions(), 0, line, &mut answers).unwrap();

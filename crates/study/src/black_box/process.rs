@@ -201,7 +201,7 @@ mod tests {
     }
 
     #[test]
-    fn lines_are_whole_whenever_they_come() {
+    fn lines_arrive_whole_at_any_pace() {
         let (lines, found) = channel();
         // Nothing is allowed while the reader waits for the first byte.
         let allowed = AtomicU64::new(0);
@@ -212,7 +212,7 @@ mod tests {
     }
 
     #[test]
-    fn a_flood_is_cut() {
+    fn excessive_output_is_truncated() {
         let (lines, found) = channel();
         let allowed = AtomicU64::new(10);
         read(&b"12345\n123456789"[..], &allowed, &lines);

@@ -104,7 +104,7 @@ mod tests {
     }
 
     #[test]
-    fn what_lies_between_rows_is_in_the_error_and_not_much_more() {
+    fn error_covers_peaks_between_rows_closely() {
         // A parabola whose vertex is in the middle of two rows: 0.0025 higher than these.
         let found = peak(0.1, 11, |time| 1.0 - (time - 0.45) * (time - 0.45));
         assert_eq!((found.time, found.value), (0.4, 1.0 - (0.4_f64 - 0.45) * (0.4 - 0.45)));

@@ -334,7 +334,7 @@ mod tests {
     }
 
     #[test]
-    fn orders_are_those_above_rounding() {
+    fn orders_follow_errors_above_rounding() {
         let own = of_errors(8.0, &[2.56e-6, 1e-8, 4e-11, 3.9e-11]);
         assert!((own.order.unwrap() - 8.0).abs() < 1e-12, "{own:?}");
         assert!(own.is_settled() && own.is_verified);
@@ -353,7 +353,7 @@ mod tests {
     }
 
     #[test]
-    fn an_error_that_falls_too_slowly_is_seen() {
+    fn slowly_falling_error_is_not_verified() {
         let own = of_errors(2.0, &[4e-2, 2e-2, 1e-2]);
         assert!(!own.is_settled() && !own.is_verified);
         assert!(of_errors(2.0, &[1e-12, 1e-12]).is_verified);

@@ -63,7 +63,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_panic_is_an_error_that_says_what_to_do() {
+    fn panic_becomes_an_error_with_a_remedy() {
         assert_eq!(caught("scan", || 1), Ok(1));
         let error = caught("scan", || panic!("row {}", 7)).unwrap_err().to_string();
         assert!(error.starts_with("internal error in scan: row 7"), "{error}");

@@ -68,7 +68,7 @@ mod tests {
     }
 
     #[test]
-    fn a_lane_is_endless_that_switches_to_and_fro_in_too_many_steps() {
+    fn lane_that_keeps_switching_is_endless() {
         let (chatter, time) = switching(1e-6, 2 * TUNING.chattering_switches);
         // The three steps before the first switch do not count.
         assert_eq!(chatter.endless(&BOTH, time, 1.0), Some((0, 3, 3.0 * 1e-6)));
@@ -79,7 +79,7 @@ mod tests {
     }
 
     #[test]
-    fn a_lane_that_goes_on_without_a_switch_is_not_endless() {
+    fn lane_that_stops_switching_is_not_endless() {
         let (mut chatter, time) = switching(1e-6, 2 * TUNING.chattering_switches);
         (0..2 * TUNING.chattering_switches * TUNING.chattering_share)
             .for_each(|step| chatter.note([None; 2].into_iter(), time + step as f64 * 1e-6));

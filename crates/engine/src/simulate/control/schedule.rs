@@ -254,7 +254,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn fixed_steps_meet_the_rows() {
+    fn fixed_steps_end_at_the_rows() {
         let schedule = Schedule::fixed(2.0, 1e-3, 0.01);
         assert_eq!(schedule.rows, 201);
         let steps: Vec<(f64, f64)> = schedule.steps_to(200).collect();
@@ -302,7 +302,7 @@ mod tests {
     }
 
     #[test]
-    fn steps_at_odds_meet_the_rows_alone() {
+    fn incommensurate_steps_coincide_only_at_rows() {
         for per_row in 1..40 {
             let schedule = Schedule::fixed(1.0, 1.0 / per_row as f64, 1.0);
             let listed = Schedule::listed(1.0, vec![schedule.steps_to(1).map(|(_, end)| end).collect()]);
@@ -319,7 +319,7 @@ mod tests {
     }
 
     #[test]
-    fn refined_steps_meet_the_same_rows() {
+    fn refined_steps_end_at_the_same_rows() {
         for schedule in [Schedule::fixed(0.2, 0.05, 0.1), Schedule::listed(0.1, vec![vec![0.025, 0.1], vec![0.2]])] {
             let refined = schedule.refined(3);
             assert_eq!(refined.steps_before(2), 3 * schedule.steps_before(2));

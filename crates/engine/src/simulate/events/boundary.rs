@@ -139,14 +139,14 @@ mod tests {
 
     /// −3 τ + τ²: least at 1.5; within 1 at its end.
     #[test]
-    fn parabolas_end_at_their_room() {
+    fn least_value_of_a_parabola_stays_within_its_span() {
         assert!((of_parabola(-3.0, 2.0, 9.0) + 2.25).abs() < 1e-15);
         assert!((of_parabola(-3.0, 2.0, 1.0) + 2.0).abs() < 1e-15);
     }
 
     /// 1 − x² − y/2 is zero at x = ±1/√2 where y = 1, and at y = 2 where x = 0, which is outside.
     #[test]
-    fn a_surface_is_told_along_each_parameter() {
+    fn grazed_surface_is_located_along_each_parameter() {
         let points = crate::numerics::spread(2, 20);
         let margins: Vec<f64> = points.iter().map(|xi| 1.0 - xi[0] * xi[0] - 0.5 * xi[1]).collect();
         let [along_x, along_y] = &grazed_at(&points, &[0.2, 1.0], &margins)[..] else { panic!() };

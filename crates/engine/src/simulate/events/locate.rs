@@ -50,7 +50,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_flight_meets_the_ground_where_its_parabola_does() {
+    fn crossings_of_parabolas_are_exact() {
         // y = 1 − 4 t²/2 over 1 s.
         let found = crossing([1.0, 0.0], [-1.0, -4.0], 1.0).unwrap();
         assert!((found.share - 0.5_f64.sqrt()).abs() < 1e-12 && !found.hidden);
@@ -60,7 +60,7 @@ mod tests {
     }
 
     #[test]
-    fn what_stays_on_its_side_does_not_switch() {
+    fn function_without_sign_change_has_no_crossing() {
         assert_eq!(crossing([1.0, -1.0], [1.0, 1.0], 1.0), None);
         assert_eq!(crossing([0.0, -1.0], [-1.0, -1.0], 1.0), None);
         assert_eq!(crossing([f64::NAN, 0.0], [1.0, 0.0], 1.0), None);

@@ -286,7 +286,7 @@ mod tests {
     }
 
     #[test]
-    fn what_all_meet_before_the_end_is_shared() {
+    fn word_has_the_events_that_all_samples_share() {
         let word = spelled(&[followed(&[0.4, 0.6]), followed(&[0.5, 0.7, 1.2])]).unwrap();
         assert_eq!((word.events.len(), word.tail), (2, Some(1.0)));
         assert_eq!(word.steps[..2], [vec![0.5, 1.0], vec![0.5, 1.0]]);
@@ -294,7 +294,7 @@ mod tests {
     }
 
     #[test]
-    fn beside_the_end_all_go_on() {
+    fn samples_continue_past_an_event_near_the_end() {
         let word = spelled(&[followed(&[0.4, 0.99, 1.1]), followed(&[0.5, 1.01, 1.2])]).unwrap();
         assert_eq!((word.events.len(), word.tail, word.steps.len()), (3, None, 3));
         let word = spelled(&[followed(&[0.4, 0.99]), followed(&[0.5, 1.01])]).unwrap();
@@ -310,7 +310,7 @@ mod tests {
     }
 
     #[test]
-    fn other_events_are_other_words() {
+    fn different_events_give_different_words() {
         let mut other = followed(&[0.5]);
         other.events[0].0.switch = 1;
         let all = [followed(&[0.4, 0.6]), followed(&[0.5]), followed(&[0.45, 1.1]), other];
@@ -320,7 +320,7 @@ mod tests {
 
     /// A sample that meets more events than are followed ends the time at the last event that all have.
     #[test]
-    fn a_motion_of_too_many_events_ends_the_time() {
+    fn unfollowed_events_shorten_the_horizon() {
         let (long, short) = (followed(&[0.4, 0.7, 0.9]), Followed { known_to: 0.8, ..followed(&[0.45, 0.75]) });
         let (horizon, end, words) = within_budget(&[long, short], 1.0).unwrap();
         assert_eq!((horizon, end, words.len()), (0.7, Some(WordsEnd::MoreEvents), 1));
@@ -329,7 +329,7 @@ mod tests {
 
     /// Eight words at the end: which of two switches three events are of. Two events make four of them.
     #[test]
-    fn a_budget_of_words_ends_the_time() {
+    fn budget_of_words_shortens_the_horizon() {
         let of_number = |number: usize| {
             let mut own = followed(&[0.4, 0.5 + 0.01 * number as f64, 0.8]);
             own.events.iter_mut().enumerate().for_each(|(index, (event, _))| event.switch = number >> index & 1);

@@ -63,7 +63,7 @@ mod tests {
     }
 
     #[test]
-    fn sizes_are_those_of_the_movement() {
+    fn error_scales_follow_the_movement() {
         let coordinates =
             [coordinate(false, false), coordinate(false, false), coordinate(true, false), coordinate(false, true)];
         let movement = Movement::new(&coordinates, 10.0);

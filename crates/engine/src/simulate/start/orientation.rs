@@ -104,7 +104,7 @@ mod tests {
     use nalgebra::DMatrix;
 
     #[test]
-    fn signs_are_those_of_determinants() {
+    fn orientation_is_the_sign_of_the_determinant() {
         let n = 5;
         let mut seen = [0; 2];
         for trial in 0..40_usize {

@@ -141,7 +141,7 @@ mod tests {
 
     /// Whatever hangs on a loop, and wherever its rows stand, as many rows depend on others as without it.
     #[test]
-    fn rows_with_columns_of_their_own_hide_no_dependence() {
+    fn rows_with_private_columns_hide_no_dependence() {
         let triangle = [vec![(0, 1.0), (1, -1.0)], vec![(1, 1.0), (2, -1.0)], vec![(2, 1.0), (0, -1.0)]];
         let tail = |from: usize, to: usize| vec![(from, 2.0), (to, -3.0)];
         let [first, second, third] = triangle;
@@ -157,7 +157,7 @@ mod tests {
     }
 
     #[test]
-    fn a_row_that_has_vanished_but_for_rounding_is_implied() {
+    fn row_of_rounding_errors_is_dependent() {
         let rows = vec![vec![(0, 1e-16), (1, -2e-16)], vec![(1, 1.0)]];
         assert!(dependent_rows(&rows, 1e-9).is_empty());
         assert_eq!(dependent_of_sizes(&rows, &[0.5, 0.5], 1e-9), [0]);

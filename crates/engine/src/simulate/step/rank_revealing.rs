@@ -125,7 +125,7 @@ mod tests {
     }
 
     #[test]
-    fn an_implied_row_is_no_hindrance() {
+    fn consistent_dependent_rows_are_solved() {
         let entries = [(0, 0, 1.0), (0, 1, 1.0), (1, 0, 1.0), (1, 2, -1.0), (2, 1, 1.0), (2, 2, 1.0)];
         let x = solve_rank_deficient(&entries, &[3.0, 1.0, 2.0], &[1.0; 3]).unwrap();
         for (row, right) in [3.0, 1.0, 2.0].into_iter().enumerate() {
@@ -135,7 +135,7 @@ mod tests {
     }
 
     #[test]
-    fn a_regular_matrix_is_solved_as_ever() {
+    fn regular_matrix_is_solved_exactly() {
         let entries: Vec<(usize, usize, f64)> = (0..6)
             .flat_map(|i| (0..6).map(move |j| (i, j, if i == j { 3.0 } else { 1.0 / (1.0 + (i + 2 * j) as f64) })))
             .collect();

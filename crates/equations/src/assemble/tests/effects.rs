@@ -145,7 +145,7 @@ fn a_torsional_spring_turns_back() {
 }
 
 #[test]
-fn nothing_is_left_of_a_spring_without_stiffness() {
+fn spring_without_stiffness_adds_no_terms() {
     let mut m = Model::new();
     m.body("a", "1", "1", "xya", &[]);
     m.effect(SpringDamper {
@@ -171,7 +171,7 @@ fn a_stiffness_that_depends_on_the_motion_leaves_no_potential() {
 
 /// Coulomb's friction, smoothed, of a pin: effects may depend on reactions.
 #[test]
-fn effects_may_speak_of_reactions() {
+fn effects_may_depend_on_reactions() {
     let mut m = Model::new();
     m.body("a", "1", "1", "xya", &[("P", "1", "0")]);
     m.revolute("pin", "ground", "a.P");

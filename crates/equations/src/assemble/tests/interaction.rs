@@ -49,7 +49,7 @@ fn touching(between: [PointRef; 2]) -> Contact {
 /// Effects that pull, touch, mesh and press without loss: the power is minus the rate of the energy. Radii and lengths
 /// are such that they act wherever the bodies are, and nowhere just at their corner.
 #[test]
-fn what_takes_nothing_has_its_potential() {
+fn lossless_effects_have_potentials() {
     let m = two_bodies();
     let between = m.between("a.P", "b.P");
     let contact = || touching(between);

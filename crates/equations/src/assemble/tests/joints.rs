@@ -36,7 +36,7 @@ fn kinds(m: &Model) -> Vec<JointKind> {
 /// −Φ_qᵀ λ on the second body is the reaction's force at the second point and its torque; the first body feels the
 /// opposite, and the pair has no moment (but for gears).
 #[test]
-fn reactions_are_what_the_multipliers_do() {
+fn reactions_equal_generalised_multiplier_forces() {
     for kind in kinds(&two_bodies()) {
         let mut m = two_bodies();
         m.joint("j", kind.clone());
@@ -102,7 +102,7 @@ fn rows_vanish_where_the_joint_is_closed() {
 }
 
 #[test]
-fn rows_are_named_after_what_they_fix() {
+fn constraint_rows_are_named_after_their_direction() {
     let mut m = two_bodies();
     for (index, kind) in kinds(&m).into_iter().enumerate() {
         m.joint(&format!("j{index}"), kind);
@@ -114,7 +114,7 @@ fn rows_are_named_after_what_they_fix() {
 
 /// An equation's multiplier stands for its force; its drive is −λ.
 #[test]
-fn an_equation_may_drive() {
+fn equations_may_drive_coordinates() {
     let mut m = Model::new();
     m.body("a", "2", "0.1", "a", &[]);
     m.joint("drive", JointKind::Equation(Equation { left: formula("a.angle"), right: formula("0.5*t^2") }));
@@ -144,7 +144,7 @@ fn a_rod_in_tension_has_a_positive_multiplier() {
 
 /// A crosshead that has x alone, in a guide that holds its y and angle once more.
 #[test]
-fn rows_that_always_hold_are_left_out() {
+fn identically_satisfied_rows_are_omitted() {
     let mut m = Model::new();
     m.interval("h", [0.1, 0.2, 0.3]);
     m.ground_point("G", "0", "2*h");
@@ -182,7 +182,7 @@ fn a_row_that_nothing_can_close_is_an_error() {
 }
 
 #[test]
-fn a_constraint_may_not_speak_of_velocities() {
+fn constraints_on_velocities_are_refused() {
     let mut m = Model::new();
     m.body("a", "1", "1", "x", &[]);
     m.joint("rolling", JointKind::Equation(Equation { left: formula("a.vx"), right: formula("1") }));

@@ -201,7 +201,7 @@ fn jacobian(system: &mut System, state: &State) -> DMatrix<f64> {
 }
 
 #[test]
-fn rows_vanish_where_the_joint_is_closed_and_take_away_its_freedoms() {
+fn rows_vanish_at_closed_joints_and_have_full_rank() {
     for (kind, rows) in kinds(&two_lumps()) {
         let mut m = two_lumps();
         m.joint("j", kind.clone());
@@ -218,7 +218,7 @@ fn rows_vanish_where_the_joint_is_closed_and_take_away_its_freedoms() {
 /// −Φ_qᵀ λ on the second body is the reaction's force at the second point and its torque; the first body feels the
 /// opposite, and the pair has no moment.
 #[test]
-fn reactions_are_what_the_multipliers_do() {
+fn reactions_equal_generalised_multiplier_forces() {
     for (kind, _) in kinds(&two_lumps()) {
         let mut m = two_lumps();
         m.joint("j", kind.clone());
@@ -281,7 +281,7 @@ pub fn potential_rate(system: &System, state: &State) -> f64 {
 }
 
 #[test]
-fn forces_and_torques_have_the_power_of_what_they_act_on() {
+fn forces_and_torques_have_force_times_velocity_as_power() {
     let (push, twist) = (Vector3::new(3.0, -2.0, 1.5), Vector3::new(0.7, -1.1, 0.4));
     for in_body in [false, true] {
         let mut m = two_lumps();

@@ -17,7 +17,7 @@ fn link(m: &mut Model, name: &str, length: &str) {
 }
 
 #[test]
-fn what_is_kept_is_kept() {
+fn given_coordinates_are_kept() {
     let mut m = slider_crank();
     m.initial("rod", 'x', TimeOrder::Position, "2*l1");
     let mut guess = m.0.mechanism_mut().initial.pop().unwrap();
@@ -70,7 +70,7 @@ fn a_four_bar_linkage_is_guessed_closed() {
 
 /// The slide is taken last: the rod says where on it the slider is.
 #[test]
-fn a_slider_with_all_coordinates_comes_after_its_rod() {
+fn slider_with_all_coordinates_is_guessed_after_its_rod() {
     let mut m = Model::new();
     link(&mut m, "crank", "1");
     link(&mut m, "rod", "3");

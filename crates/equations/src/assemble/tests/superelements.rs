@@ -111,7 +111,7 @@ fn inertia_agrees_with_lagrange() {
 
 /// Inertial forces are the same from a frame that moves steadily.
 #[test]
-fn inertia_knows_no_steady_motion() {
+fn inertia_is_independent_of_steady_motion() {
     for is_spatial in [false, true] {
         let system = between_frames(is_spatial, "1e-18").build();
         let mut state = state_of(&system, is_spatial, 3);

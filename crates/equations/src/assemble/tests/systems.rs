@@ -58,7 +58,7 @@ fn pendulum() -> Model {
 }
 
 #[test]
-fn a_hanging_pendulum_weighs_what_it_weighs() {
+fn pin_force_of_a_hanging_pendulum_equals_its_weight() {
     let mut system = pendulum().build();
     let mut state = State::at(&system, &[0.0, -0.4, -std::f64::consts::FRAC_PI_2]);
     solve_motion(&mut system, &mut state);

@@ -25,7 +25,7 @@ mod tests {
     use proptest::prelude::*;
 
     #[test]
-    fn what_is_bettered_is_not_on_the_front() {
+    fn dominated_points_are_not_on_the_front() {
         let points =
             [(1.0, 1.0), (0.1, 5.0), (0.1, 4.0), (0.5, 4.5), (2.0, 1.0), (0.01, f64::NAN), (f64::INFINITY, 0.1)];
         assert_eq!(pareto(&points), [2, 0]);
@@ -35,7 +35,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn the_front_is_what_its_definition_says(points in prop::collection::vec((0..20_u8, 0..20_u8), 0..40)) {
+        fn front_matches_its_definition(points in prop::collection::vec((0..20_u8, 0..20_u8), 0..40)) {
             let points: Vec<(f64, f64)> = points.into_iter().map(|(x, y)| (f64::from(x), f64::from(y))).collect();
             let front = pareto(&points);
             let betters = |a: (f64, f64), b: (f64, f64)| a.0 <= b.0 && a.1 <= b.1 && a != b;

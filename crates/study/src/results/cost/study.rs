@@ -210,7 +210,7 @@ mod tests {
     }
 
     #[test]
-    fn without_bounds_the_models_own_scheme_is_chosen_from() {
+    fn study_without_bounds_compares_only_the_schemes() {
         let hht = CostMethod::Scheme(Scheme::Hht { alpha: -0.1 });
         let mut study = study(vec![]);
         // Bounds that the budget did not allow are another matter.

@@ -272,7 +272,7 @@ mod tests {
     }
 
     #[test]
-    fn grades_are_those_of_brute_force() {
+    fn grades_match_brute_force() {
         let sets = [
             vec![(0.9, 1.0), (0.5, 2.0), (0.2, 5.0), (0.1, 9.0)],
             vec![(0.8, 0.5), (0.4, 3.0), (0.1, 4.0)],
@@ -299,7 +299,7 @@ mod tests {
     }
 
     #[test]
-    fn costs_together_and_nothing() {
+    fn common_multiples_and_mixed_costs_are_optimal() {
         let found =
             choose(&mut Stack(vec![0.2, 0.3]), &[item(Choice::Together), item(Choice::Together)], &[1.0; 3]).unwrap();
         assert!(found.multiples.iter().all(|f| (f - 2.0).abs() < 1e-6), "{found:?}");

@@ -173,7 +173,7 @@ mod tests {
 
     /// −(x − a)² + b y: an extreme within, and one at the end.
     #[test]
-    fn a_step_finds_what_lies_within_and_what_lies_at_an_end() {
+    fn steps_find_inner_extremes_and_those_at_ends() {
         let value = |x: &[f64]| -(x[0] - 0.3).powi(2) + 2.0 * x[1];
         let (steps, climb) = climbed(&[0.0, 0.0], value, |x| vec![-2.0 * (x[0] - 0.3), 2.0]);
         let best = climb.best.as_ref().unwrap();

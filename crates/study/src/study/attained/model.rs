@@ -84,7 +84,7 @@ mod tests {
 
     /// x of the box with slope 1 everywhere and a ridge along x + y = 0, known from one move across it.
     #[test]
-    fn a_ridge_is_left_at_a_side_of_the_box() {
+    fn ridge_is_followed_to_a_side_of_the_box() {
         let across = Curvature { moved: vec![0.5, 0.5], fall: vec![40.0, 40.0] };
         let found = Bend::of([&across].into_iter()).largest(&[0.0, 0.0], &[1.0, 0.0]);
         // x − 20 (x + y)² is largest at x = 1, where its derivative by y vanishes: at y = −1.
@@ -92,7 +92,7 @@ mod tests {
     }
 
     #[test]
-    fn without_curvature_the_corner_is_found_that_the_signs_name() {
+    fn model_without_curvature_is_largest_in_a_corner() {
         let found = Bend::of(std::iter::empty()).largest(&[0.3, -0.2, 0.1], &[2.0, -1e-3, 0.0]);
         assert_eq!(found, [1.0, -1.0, 0.1]);
     }
@@ -101,7 +101,7 @@ mod tests {
         /// The conditions of Karush, Kuhn and Tucker: the gradient of the model vanishes along axes on which the point
         /// lies within the box, and points outwards at a side. B is that of a function whose Hessian is H = Σ n nᵀ.
         #[test]
-        fn nothing_is_to_be_gained_from_the_point_that_is_found(
+        fn found_point_satisfies_the_kkt_conditions(
             normals in prop::collection::vec(prop::collection::vec(-3.0..3.0, 6), 1..5),
             moves in prop::collection::vec(prop::collection::vec(-1.0..1.0, 6), 1..9),
             point in prop::collection::vec(-1.0..1.0, 6),

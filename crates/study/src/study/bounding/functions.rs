@@ -158,7 +158,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_end_of_which_nothing_is_known_is_not_covered_by_the_other() {
+    fn unknown_end_is_not_covered_by_the_other_end() {
         for known in [false, true] {
             let mut ends = FunctionEnds::new(1, 1, Vec::new());
             ends.note(0, 0, known, FunctionEnd { value: 1.0, open: 0.5 });

@@ -116,7 +116,7 @@ mod tests {
     }
 
     #[test]
-    fn outside_and_inside_are_told_apart() {
+    fn excess_and_deficit_of_width_are_distinguished() {
         let known = KnownBands::new(vec![output(&[0.5, 0.0, f64::NAN], &[0.5, 2.0, 3.0])]);
         assert_eq!(known.scales, [2.0]);
         let of = |lower: &[f64], upper: &[f64]| known.of_bounds(&[output(lower, upper)]);
@@ -129,7 +129,7 @@ mod tests {
     }
 
     #[test]
-    fn an_output_at_rest_is_not_looked_at() {
+    fn output_at_rest_is_ignored() {
         let still = OutputBounds { bands: vec![], ..output(&[], &[]) };
         let moving = OutputBounds { name: "y".into(), nominal: vec![0.0, 1.0, 4.0], ..still.clone() };
         let known = KnownBands::new(vec![still, moving]);

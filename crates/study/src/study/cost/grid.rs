@@ -140,7 +140,7 @@ mod tests {
     }
 
     #[test]
-    fn steps_divide_the_rows_and_none_is_there_twice() {
+    fn steps_divide_the_rows_without_duplicates() {
         let steps = |step: f64| -> Vec<f64> {
             steppings(&simulation(Stepping::Fixed(step)))
                 .into_iter()

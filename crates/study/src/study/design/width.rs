@@ -75,7 +75,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn hulls_leave_out_grades_above_the_line_of_others() {
+    fn lower_hulls_omit_grades_above_them() {
         let grades = [[1.0, 8.0], [2.0, 7.0], [3.0, 2.0], [4.0, 1.5], [5.0, 1.0]];
         assert_eq!(lower_hull(grades.into_iter()), [[1.0, 8.0], [3.0, 2.0], [5.0, 1.0]]);
     }

@@ -118,7 +118,7 @@ mod tests {
 
     /// An omitted effect leaves nothing: no coordinate, no register, no instruction.
     #[test]
-    fn what_is_left_out_leaves_nothing() {
+    fn omitted_effect_leaves_no_instructions() {
         let bare = prepare_whole(&example(None)).unwrap();
         let counts = |simulator: &Simulator| {
             let p = &simulator.program;

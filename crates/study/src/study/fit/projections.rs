@@ -134,7 +134,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_polygon_fills_the_cells_that_it_meets() {
+    fn polygon_fills_the_cells_that_it_intersects() {
         let mut raster = Raster::over([[0.0, 1.0], [0.0, 1.0]]);
         // Half of the unit square.
         let triangle = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];

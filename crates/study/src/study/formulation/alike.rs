@@ -58,7 +58,7 @@ mod tests {
 
     /// A tree, loops with a cut that was searched for, and loops in absolute coordinates.
     #[test]
-    fn the_same_questions_are_compiled_to_the_same_steps_and_start() {
+    fn equal_questions_compile_to_equal_steps_and_start() {
         for name in ["double_pendulum", "slider_crank", "four_bar", "excavator", "bricard"] {
             let path = format!("{}/../../models/{name}.yaml", env!("CARGO_MANIFEST_DIR"));
             let description = model::load(std::path::Path::new(&path), &[]).unwrap_or_else(|errors| panic!("{errors}"));

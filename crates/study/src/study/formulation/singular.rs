@@ -79,7 +79,7 @@ mod tests {
     /// A parallelogram that swings through its flat position, by its weight, or turns through it; before that, and with
     /// a rod that is a little longer, it is regular.
     #[test]
-    fn joint_coordinates_see_the_singular_configurations_of_absolute_ones() {
+    fn both_formulations_find_the_same_singularities() {
         let linkage = |rod: f64, rate: f64, duration: f64| {
             let text = format!(
                 "bodies:

@@ -157,7 +157,7 @@ simulation: { duration: 1, step: 0.01 }
 
     /// The slider's reach ends at 3: it waits there, and comes back.
     #[test]
-    fn what_cannot_be_reached_is_approached() {
+    fn unreachable_position_is_approached() {
         let model = model::load_str("crank.yaml", CRANK, &[]).unwrap();
         let movable = Movable::new(&model, Interruption::default()).unwrap();
         let (sample, mut hand) = (movable.nominal(), movable.hand());
@@ -174,7 +174,7 @@ simulation: { duration: 1, step: 0.01 }
     }
 
     #[test]
-    fn what_is_driven_stays_where_it_is() {
+    fn driven_body_does_not_follow_the_hand() {
         let text = CRANK.replace("joints:", "joints:\n  drive: { equation: crank.angle = 1 }");
         let text = text.replace("initial: { crank.angle: 60 deg }\n", "");
         let model = model::load_str("crank.yaml", &text, &[]).unwrap();

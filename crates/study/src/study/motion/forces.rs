@@ -140,7 +140,7 @@ mod tests {
     }
 
     #[test]
-    fn a_body_by_itself_has_no_forces() {
+    fn body_without_joints_and_effects_has_no_forces() {
         assert!(
             forces_of(
                 "bodies: { b: { mass: 1, coordinates: [x] } }\noutputs: { x: b.x }\nsimulation: { duration: 0.01 s, step: 0.005 s }\n"
@@ -158,7 +158,7 @@ mod tests {
 
     /// A weight hangs from a rod that hangs from a spring: each carries everything below it.
     #[test]
-    fn what_hangs_is_carried() {
+    fn rod_and_spring_carry_hanging_weights() {
         let found = forces_of(
             "bodies:\n  upper: { mass: 2, coordinates: [y], points: { top: [0, 1], bottom: [0, -1] } }\n  lower: { mass: 3, coordinates: [y] }\n\
              joints: { weld: { fixed: [upper.bottom, lower] } }\n\
@@ -174,7 +174,7 @@ mod tests {
 
     /// A crate rests on two of its corners, to which the floor's force is spread as the lever says.
     #[test]
-    fn a_floor_pushes_where_it_touches() {
+    fn floor_force_acts_at_the_contact() {
         let found = forces_of(
             "bodies: { crate: { mass: 1, inertia: 1, points: { foot: [0, 0] } } }\n\
              effects:\n  weight: { force: { on: crate, value: [0, -10] } }\n\

@@ -300,7 +300,7 @@ mod tests {
     }
 
     #[test]
-    fn poses_come_through_the_same_tapes() {
+    fn poses_leave_the_steps_unchanged() {
         let description = four_bar();
         let whole = crate::study::formulation::compiled(&crate::assemble::Questions::of(&description)).unwrap().program;
         let posed = Posed::compile(&description, None, Interruption::default()).unwrap().rows.simulator.program;
@@ -313,7 +313,7 @@ mod tests {
     }
 
     #[test]
-    fn polynomials_meet_samples_that_they_were_not_made_from() {
+    fn polynomials_match_held_out_samples() {
         let motion = motion(
             &four_bar(),
             MotionOptions {
@@ -346,7 +346,7 @@ mod tests {
     }
 
     #[test]
-    fn a_formulation_that_is_known_gives_the_motion_of_one_that_is_chosen() {
+    fn known_and_chosen_formulation_give_the_same_motion() {
         let description = four_bar();
         let options = crate::study::Options { threads: Some(1), ..Default::default() };
         let (_, summary) = crate::study::run(&description, options).unwrap();
@@ -363,7 +363,7 @@ mod tests {
     }
 
     #[test]
-    fn a_small_size_leaves_few_poses_and_says_how_far_off_they_are() {
+    fn small_size_gives_few_poses_and_their_error() {
         let motion = motion(
             &four_bar(),
             MotionOptions {

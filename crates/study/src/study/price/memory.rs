@@ -77,7 +77,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_lacking_is_said_in_gigabytes() {
+    fn lacking_memory_is_stated_in_gigabytes() {
         let lacking = Memory { outputs: 5000, rows: 101, needed: 9_600_000_000, free: 4_000_000_000 };
         let message = lacking.to_string();
         assert!(
@@ -88,7 +88,7 @@ mod tests {
 
     #[cfg(target_os = "linux")]
     #[test]
-    fn this_system_says_what_is_free() {
+    fn free_memory_is_known_on_this_system() {
         assert!(free().is_some_and(|free| free > 1 << 20));
     }
 }

@@ -96,7 +96,7 @@ mod tests {
     use super::in_words;
 
     #[test]
-    fn times_are_in_units_of_people() {
+    fn times_are_written_in_everyday_units() {
         for (seconds, words) in [
             (0.0, "1 ms"),
             (0.34, "340 ms"),

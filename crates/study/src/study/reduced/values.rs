@@ -300,7 +300,7 @@ mod tests {
 
     /// Central differences of the values themselves.
     #[test]
-    fn slopes_are_differences() {
+    fn slopes_match_central_differences() {
         let humps = Humps { heights: vec![0, 1], times: vec![6, 5] };
         let all = vec![
             Value::Greatest(vec![0, 3]),

@@ -137,7 +137,7 @@ mod tests {
 
     /// Levels are chosen if they take fewer steps, and dropped if they gain nothing.
     #[test]
-    fn levels_are_chosen_where_they_gain() {
+    fn levels_are_chosen_if_they_save_steps() {
         let search = |error: &dyn Fn(Integration, f64) -> f64| {
             let mut search = StepSearch::new(&Schedule::fixed(1.0, 0.01, 0.1), true);
             while search.adjust(error(search.integration, search.count as f64 / 10.0)) {}
@@ -159,7 +159,7 @@ mod tests {
     }
 
     #[test]
-    fn what_fails_is_tried_with_smaller_steps() {
+    fn failed_run_is_retried_with_smaller_steps() {
         let mut search = StepSearch::new(&Schedule::fixed(1.0, 0.1, 0.1), false);
         let mut tried = 0;
         while search.adjust(f64::NAN) {

@@ -342,7 +342,7 @@ mod tests {
 
     /// A pendulum on a spring; an entry of ∂r/∂v in place of one of ∂r/∂q is detected, and the right ones are exact.
     #[test]
-    fn a_wrong_derivative_is_seen() {
+    fn wrong_derivative_is_detected() {
         let text = "bodies: { ground: { points: { P: [0.2, 0.6] } }, rod: { mass: 2, inertia: 0.3, points: { A: [-0.4, 0.1], B: [0.5, 0] } } }\n\
                     joints: { pin: { revolute: [ground, rod.A] } }\n\
                     effects: { spring: { spring_damper: { between: [ground.P, rod.B], stiffness: 30, damping: 2, free_length: 0.3 } } }\n\

@@ -111,7 +111,7 @@ mod tests {
 
     /// Every point of a parabola is on its hull.
     #[test]
-    fn a_round_path_costs_no_hull_a_point() {
+    fn curved_path_takes_fewer_hulls_than_points() {
         let mut zone = Zone::default();
         let begun = std::time::Instant::now();
         for index in -100_000..=100_000 {

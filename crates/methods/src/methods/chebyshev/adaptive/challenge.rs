@@ -141,7 +141,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn few_places_stand_for_many() {
+    fn few_points_represent_many() {
         let scale = Scale { weights: vec![1.0, 0.01], near: 0.05 };
         let known = [vec![1.0, 1.0]];
         // Along the second axis all are alike.

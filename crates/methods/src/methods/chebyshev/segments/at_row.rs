@@ -197,7 +197,7 @@ mod tests {
     /// t³ + 2t in a segment that lasts 1 + 0.1 ξ + 0.02 ξ² s: at a time it depends on no parameter, and it goes on
     /// beyond the segment.
     #[test]
-    fn a_jet_at_a_time_does_not_know_of_its_segment() {
+    fn jet_at_a_time_is_independent_of_its_segment() {
         let space = JetSpace::new(1, 3);
         let length = vec![1.0, 0.1, 0.02, 0.0];
         let steps = vec![0.6, 0.95, 1.0];

@@ -300,7 +300,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_surface_is_where_margins_are_zero() {
+    fn surface_is_the_zero_set_of_margins() {
         // A circle of radius ½ about (0.1, 0), the margin twice as steep inside.
         let margin = |xi: &[f64]| {
             let distance = (xi[0] - 0.1).powi(2) + xi[1] * xi[1] - 0.25;
@@ -318,7 +318,7 @@ mod tests {
 
     /// Margins that are flat and wavy on one side, and steep on the other: no polynomial has both.
     #[test]
-    fn a_surface_parts_samples_whatever_their_margins_are() {
+    fn surface_separates_samples_of_any_margins() {
         let margin = |x: f64| if x < 0.05 { 1e-3 * (1.2 + (9.0 * x).sin()) } else { 0.05 - x - 0.01 };
         let points = crate::numerics::spread(1, 60);
         let samples: Vec<(&[f64], f64)> = points.iter().map(|xi| (&xi[..], margin(xi[0]))).collect();
@@ -330,7 +330,7 @@ mod tests {
     }
 
     #[test]
-    fn roots_behind_a_surface_are_terms() {
+    fn basis_has_roots_behind_a_surface() {
         let f = |x: f64| 1.0 + 0.3 * x + if x > 0.2 { (x - 0.2).sqrt() * (0.5 - 0.1 * x) } else { 0.0 };
         let margins: Vec<Vec<f64>> = (0..20).map(|index| vec![f64::from(index) / 10.0 - 0.95]).collect();
         let level = Level::through(&margins.iter().map(|xi| (&xi[..], 0.2 - xi[0])).collect::<Vec<_>>()).unwrap();

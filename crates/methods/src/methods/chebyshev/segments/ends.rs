@@ -95,7 +95,7 @@ mod tests {
     }
 
     #[test]
-    fn a_place_is_within_where_errors_cannot_lift_it() {
+    fn rivals_exceed_an_end_only_within_their_errors() {
         let beyond =
             |within: f64, change: f64, along: Option<f64>| Rival { within, error: 1e-3, change, along }.beyond(1e-3);
         assert!(beyond(5e-3, f64::INFINITY, None) == 0.0);

@@ -324,7 +324,7 @@ mod tests {
 
     /// The ceiling is met from 5.05 to 5.1 m/s only, where none of the grid's samples is.
     #[test]
-    fn a_word_that_no_sample_of_the_grid_has_is_fitted() {
+    fn word_without_samples_in_the_grid_is_fitted() {
         let (throws, (pieces, _, known_to)) = thrown(30.0, 5.1);
         let words = |xi: &Vec<f64>| throws.cut(throws.domain.value(0, xi[0])).2.len();
         assert!(Surrogate::tensor(&[5], &[6]).samples().iter().map(words).all(|segments| segments == 1));

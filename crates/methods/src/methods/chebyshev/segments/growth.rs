@@ -139,7 +139,7 @@ mod tests {
 
     /// (1 + a x + b y)⁻¹ has terms of the powers of a x + b y, so that the estimate of x y from the axes is right.
     #[test]
-    fn a_mixed_term_follows_from_those_before_it() {
+    fn mixed_term_is_predicted_from_lower_terms() {
         let (a, b) = (0.2, 0.05);
         let sizes: FxHashMap<Vec<u8>, f64> =
             [(vec![0, 0], 1.0), (vec![1, 0], a), (vec![0, 1], b), (vec![2, 0], a * a), (vec![0, 2], b * b)]

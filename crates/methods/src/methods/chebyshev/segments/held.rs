@@ -225,7 +225,7 @@ mod tests {
     }
 
     #[test]
-    fn parabolas_go_through_misses_on_the_lattice() {
+    fn parabolas_interpolate_misses_on_the_lattice() {
         let points = validation(2, 4);
         let lines = AxisLines::new(&points);
         let of = |xi: &[f64]| 0.3 - xi[0] + 0.5 * xi[0] * xi[0] * xi[1] - 0.2 * xi[1] * xi[1];
@@ -243,7 +243,7 @@ mod tests {
 
     /// A parameter that misses do not depend on, and one that samples outside of the part hide.
     #[test]
-    fn misses_change_along_the_axes_that_they_depend_on() {
+    fn misses_change_along_influential_axes_only() {
         let points = validation(2, 4);
         let lines = AxisLines::new(&points);
         let own = misses(&lines, |xi| 1e-3 * xi[1].powi(2));
