@@ -337,7 +337,7 @@ mod tests {
     }
 
     #[test]
-    fn the_sentence_says_when_nothing_can_be_chosen() {
+    fn sentence_gives_reasons_if_no_setting_is_chosen() {
         let at = |tolerance| choice(&CostStudy { tolerance, ..study() });
         insta::assert_snapshot!([at(3e-3), at(1e-4), at(1e-5)].join("\n"), @r"
         The cheapest setting within 3e-3 is Scan with 5 points per parameter, steps of 1e-3 s: 36 simulations in 10.0 ms, too wide by 0, too narrow by 2.0e-3.

@@ -100,7 +100,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_effect_says_all_that_there_is() {
+    fn every_effect_is_documented_completely() {
         for EffectDocs { docs, adds } in all().unwrap() {
             assert!(!docs.description.is_empty() && !docs.keys.is_empty() && adds.is_some(), "{}", docs.keyword);
             assert!(docs.keys.iter().all(|key| !key.description.is_empty()), "{}", docs.keyword);

@@ -25,7 +25,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_joint_says_all_that_there_is() {
+    fn every_joint_is_documented_completely() {
         let plain = crate::overview::plain(&text());
         for joint in JointKind::docs() {
             let docs = &joint.element;

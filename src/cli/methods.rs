@@ -50,7 +50,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_method_has_a_description_and_a_source_and_every_key_too() {
+    fn every_method_and_key_is_documented() {
         for MethodDocs { keyword, description, source, keys } in all() {
             assert!(!description.is_empty() && !source.is_empty(), "{keyword}");
             assert!(keys.iter().all(|(_, description)| !description.is_empty()), "{keyword}: {keys:?}");

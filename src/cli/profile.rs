@@ -159,7 +159,7 @@ mod tests {
     }
 
     #[test]
-    fn stages_of_a_subsystem_add_up_and_have_a_thread_of_their_own() {
+    fn stages_of_a_subsystem_add_up_on_a_separate_thread() {
         let spans = [
             span("", None, "reading", [0, 10]),
             span("crank", Some(0), "scan", [10, 40]),

@@ -133,7 +133,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn lines_tell_what_is_left() {
+    fn lines_state_the_remaining_time() {
         let line = |stage, fraction| line("crank", stage, fraction, Duration::from_secs(30));
         assert_eq!(line("scan", 0.25), "crank: scan, 25 % done, about 2 minutes left");
         assert_eq!(line("", 0.75), "crank: 75 % done, about 10 seconds left");

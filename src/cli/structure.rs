@@ -117,7 +117,7 @@ mod tests {
     }
 
     #[test]
-    fn what_does_not_move_strikes_the_eye() {
+    fn mechanism_at_rest_is_described_as_such() {
         let mass = MassRange { nominal: 2.0, lower: 2.0, upper: 2.0 };
         let resisting = vec![KindCount { kind: "drag", count: 1 }];
         let mobility = MobilityCount { drives: 0, ..mobility() };

@@ -63,7 +63,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_constant_has_a_name_of_its_own_a_reason_and_an_effect() {
+    fn every_constant_has_a_unique_name_a_reason_and_an_effect() {
         let constants = tuning();
         let names: BTreeSet<_> = constants.iter().map(|constant| (constant.room, constant.name)).collect();
         assert!(names.len() == constants.len() && constants.len() > 1000);

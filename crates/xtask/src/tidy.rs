@@ -152,7 +152,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn rules_see_their_violations_and_nothing_else() {
+    fn rules_count_exactly_their_violations() {
         let wide = format!("    /// {}", "x".repeat(COLUMNS));
         assert_eq!(
             [wide_comment("a.rs", &wide), wide_comment("a.md", &wide), wide_comment("a.rs", "/// x")],

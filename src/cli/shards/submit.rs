@@ -154,7 +154,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn paths_are_one_word_of_a_shell() {
+    fn paths_are_quoted_for_a_shell() {
         assert_eq!(quoted(Path::new("/a/b-1.yaml")), "/a/b-1.yaml");
         assert_eq!(quoted(Path::new("it's $HOME")), r"'it'\''s $HOME'");
         assert_eq!(quoted(Path::new("")), "''");

@@ -102,7 +102,7 @@ mod tests {
     use crate::results::{Band, Method, OutputBounds};
 
     #[test]
-    fn columns_are_those_of_the_table() {
+    fn columns_match_the_headings_of_the_table() {
         let error = BandError { total: vec![0.0], unresolved: vec![false], ..BandError::default() };
         let band = Band { method: Method::Scan, lower: vec![0.0], upper: vec![1.0], error };
         let output = |name: &str, bands| OutputBounds {

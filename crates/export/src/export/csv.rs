@@ -122,7 +122,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_read_back_as_they_were() {
+    fn numbers_are_read_back_exactly() {
         for x in [0.1, 1.0 / 3.0, f64::MIN_POSITIVE, f64::MAX, -0.0, 5e-324, 1e16, 123_456_789.25, f64::INFINITY] {
             let text = number(x);
             assert_eq!(text.parse::<f64>().unwrap().to_bits(), x.to_bits(), "{text}");
@@ -132,7 +132,7 @@ mod tests {
     }
 
     #[test]
-    fn no_rows_leave_the_headings() {
+    fn table_without_rows_has_headings() {
         assert_eq!(bounds_csv(&Bounds::default()).unwrap(), b"t\n");
     }
 }

@@ -283,7 +283,7 @@ mod tests {
     }
 
     #[test]
-    fn results_are_written_over_older_ones_and_nothing_else_is_left() {
+    fn results_replace_older_results_without_remains() {
         let dir = tempfile::tempdir().unwrap();
         let place = dir.path().join("results/crank");
         let (bounds, summary) = results();
@@ -316,7 +316,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_that_cannot_be_replaced_is_named_and_nothing_half_is_left() {
+    fn irreplaceable_file_is_named_and_no_partial_file_remains() {
         let dir = tempfile::tempdir().unwrap();
         // A folder has the name of a file.
         fs::create_dir(dir.path().join("x3.svg")).unwrap();

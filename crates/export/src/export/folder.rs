@@ -203,7 +203,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn nothing_is_replaced_before_all_is_written() {
+    fn files_are_replaced_only_after_all_are_written() {
         let dir = tempfile::tempdir().unwrap();
         let contents = || fs::read_to_string(dir.path().join("a.csv")).unwrap();
         fs::write(dir.path().join("a.csv"), "old").unwrap();
@@ -233,7 +233,7 @@ mod tests {
     }
 
     #[test]
-    fn what_killed_and_older_runs_left_goes_and_nothing_else() {
+    fn only_files_of_killed_and_older_runs_are_removed() {
         let dir = tempfile::tempdir().unwrap();
         let dir = dir.path();
         for name in [".mbint-x1.tmp", "mine.tmp", "a.csv"] {
@@ -259,7 +259,7 @@ mod tests {
 
     /// Such a list by others names files that mbint did not write, or paths elsewhere.
     #[test]
-    fn a_list_by_others_removes_nothing() {
+    fn foreign_list_of_files_removes_no_file() {
         let dir = tempfile::tempdir().unwrap();
         let (dir, out) = (dir.path(), dir.path().join("out"));
         fs::create_dir(&out).unwrap();

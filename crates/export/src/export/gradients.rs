@@ -156,7 +156,7 @@ mod tests {
     }
 
     #[test]
-    fn the_table_and_the_plot_have_all_that_has_influence() {
+    fn table_and_plot_have_all_influential_parameters() {
         let all = gradients();
         let table = String::from_utf8(gradients_csv(&all).unwrap()).unwrap();
         assert_eq!(table, "t,slider.x,slider.x.l1,slider.x.k,slider.x.m\n0.25,0.3,-2,0.5,0\n");

@@ -121,7 +121,7 @@ mod tests {
     }
 
     #[test]
-    fn many_scenes_have_a_legend_of_several_rows_and_colours_of_their_own() {
+    fn many_scenes_have_several_rows_of_legend() {
         let bounds = bounds(1.0, 0.1, &[Method::Scan]);
         let names: Vec<String> = (0..20).map(|index| format!("variant {index}")).collect();
         let scenes: Vec<SceneBounds> = names.iter().map(|name| SceneBounds { name, bounds: &bounds }).collect();
@@ -131,7 +131,7 @@ mod tests {
     }
 
     #[test]
-    fn a_band_that_is_resolved_goes_before_one_that_is_not() {
+    fn resolved_bands_are_preferred() {
         let mut bounds = bounds(1.0, 0.1, &[Method::Chebyshev, Method::Scan]);
         bounds.outputs[0].bands[0].error.unresolved[50] = true;
         assert_eq!(best(&bounds.outputs[0]).unwrap().method, Method::Scan);

@@ -184,7 +184,7 @@ mod tests {
 
     /// The data are those of the table, in the panels' units and to the digits that can be seen.
     #[test]
-    fn the_data_are_the_curves() {
+    fn plotted_data_equal_the_curves() {
         let (times, output) = sample(201);
         let (_, data) = plot(&times, &output);
         let series = |id: &str| data["series"].as_array().unwrap().iter().find(|series| series["id"] == id).unwrap();
@@ -239,7 +239,7 @@ mod tests {
     }
 
     #[test]
-    fn a_bound_that_explodes_leaves_the_plot() {
+    fn diverging_bound_is_clipped() {
         let (times, mut output) = sample(101);
         output.bands[1].upper[90..].fill(1e12);
         output.bands[1].lower[90..].fill(-1e12);
@@ -249,7 +249,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_unreliable_is_hatched_there_alone() {
+    fn only_unreliable_rows_are_hatched() {
         let (times, mut output) = sample(101);
         assert!(!plot(&times, &output).0.contains("class=\"hatch\""));
         output.bands[0].error.unresolved[50] = true;
@@ -297,7 +297,7 @@ mod tests {
     }
 
     #[test]
-    fn rounding_beside_others_of_the_unit_is_a_constant() {
+    fn rounding_among_outputs_of_its_unit_is_a_constant() {
         let (times, mut output) = sample(101);
         let noise = OutputBounds {
             name: "noise".into(),
@@ -322,7 +322,7 @@ mod tests {
     }
 
     #[test]
-    fn quantiles_are_a_band_of_their_own() {
+    fn quantiles_form_a_separate_band() {
         let (times, output) = sample(101);
         let at = |share: f64| -> Vec<Uncertain> {
             let of = |x: &f64| Uncertain { value: x + share, sampling: 1e-4, error: 0.0 };

@@ -217,7 +217,7 @@ mod tests {
     }
 
     #[test]
-    fn wherever_it_ends_nothing_is_mixed_and_the_rest_is_done() {
+    fn interrupted_replacement_is_completed_without_mixing() {
         let plan: Plan = {
             let dir = decided();
             serde_json::from_slice(&fs::read(dir.path().join(JOURNAL).join(PLAN)).unwrap()).unwrap()
@@ -249,7 +249,7 @@ mod tests {
     }
 
     #[test]
-    fn where_a_file_cannot_be_set_aside_all_go_back() {
+    fn all_files_are_restored_if_one_cannot_be_moved() {
         let dir = decided();
         // All others are set aside when the last cannot be.
         let plan: Plan = serde_json::from_slice(&fs::read(dir.path().join(JOURNAL).join(PLAN)).unwrap()).unwrap();
@@ -265,7 +265,7 @@ mod tests {
     }
 
     #[test]
-    fn a_plan_moves_nothing_elsewhere() {
+    fn plan_moves_no_file_outside_its_folder() {
         let dir = tempfile::tempdir().unwrap();
         let out = dir.path().join("out");
         fs::create_dir_all(out.join(JOURNAL).join(OLD)).unwrap();

@@ -189,7 +189,7 @@ mod tests {
     use super::header;
 
     #[test]
-    fn headers_are_those_of_numpy() {
+    fn headers_match_numpy() {
         // numpy.lib.format.write_array_header_1_0 of (3,) and of (2, 5, 4).
         let text = |shape: &[usize]| String::from_utf8_lossy(&header("<f8", shape)[10..]).trim_end().to_owned();
         assert_eq!(text(&[3]), "{'descr': '<f8', 'fortran_order': False, 'shape': (3,), }");

@@ -142,7 +142,7 @@ mod tests {
     }
 
     #[test]
-    fn the_table_is_long() {
+    fn table_has_long_format() {
         let first = Bounds {
             times: vec![0.0, 0.1],
             outputs: vec![output("x", &[0.0, f64::NAN], vec![scan(2)])],
@@ -167,7 +167,7 @@ mod tests {
     }
 
     #[test]
-    fn what_scenes_share_is_plotted() {
+    fn shared_outputs_are_plotted() {
         let bounds = |names: &[&str]| Bounds {
             times: vec![0.0, 1.0],
             outputs: names.iter().map(|name| output(name, &[0.0, 1.0], vec![scan(2)])).collect(),

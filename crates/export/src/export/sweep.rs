@@ -151,7 +151,7 @@ mod tests {
     }
 
     #[test]
-    fn bounds_stand_over_a_parameter() {
+    fn bounds_are_plotted_against_a_parameter() {
         let output = output();
         let caption = Caption { model: "crank", prefix: "s" };
         let swept = Swept { name: "l1", unit: "mm", si: 1e-3 };

@@ -58,7 +58,7 @@ mod tests {
     use crate::results::OutputBounds;
 
     #[test]
-    fn each_sample_is_a_point_once() {
+    fn each_sample_is_listed_once() {
         let output = OutputBounds { name: "x".into(), unit: "m".into(), display: None, nominal: vec![], bands: vec![] };
         let witness = |row: usize, is_upper: bool, value: f64, parameter: f64| Witness {
             row,

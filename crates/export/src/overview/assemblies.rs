@@ -33,7 +33,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_line_says_what_is_shared() {
+    fn line_lists_shared_tolerances() {
         let mut of = AssemblySummary {
             assembly: "quarter_car".into(),
             instances: vec!["left".into(), "right".into()],

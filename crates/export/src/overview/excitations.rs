@@ -49,7 +49,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_line_tells_whether_constants_are_enough() {
+    fn line_compares_functions_with_constants() {
         let of = |as_constant, as_function| ExcitationSummary {
             output: "shake".into(),
             unit: "m/s^2".into(),

@@ -297,7 +297,7 @@ mod tests {
     }
 
     #[test]
-    fn what_does_not_go_together_is_placed() {
+    fn mismatched_dimensions_are_located() {
         for (text, wanted) in [
             ("1 + (l + m)", "5..10 a length (m) and a mass (kg) cannot be added"),
             ("sin(l)", "0..6 a length (m) stands where an angle (rad) belongs"),

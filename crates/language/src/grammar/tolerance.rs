@@ -317,7 +317,7 @@ mod tests {
     }
 
     #[test]
-    fn every_form_is_taken_apart() {
+    fn every_notation_is_parsed() {
         for (written, wanted) in [
             ("0.5 m ± 1%", "0.5 m | 1%"),
             ("0.5 m±1%", "0.5 m | 1%"),
@@ -371,7 +371,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_begun_is_finished() {
+    fn incomplete_notations_are_refused() {
         assert_eq!(parts("0.5 ±"), "! a number belongs behind the `±`");
         assert_eq!(parts("1 ± 2 +/- 3"), "! a tolerance has one `±`");
         assert_eq!(parts("[1, 2"), "! the interval's `]` is missing");
@@ -380,7 +380,7 @@ mod tests {
     }
 
     #[test]
-    fn parts_have_their_places() {
+    fn parts_have_spans() {
         let Toleranced { value, deviation: Some(Deviation::Sides { plus, minus }) } =
             read(&node("0.5 m +0.01 -1%")).unwrap()
         else {

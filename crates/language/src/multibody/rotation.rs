@@ -245,7 +245,7 @@ mod tests {
     }
 
     #[test]
-    fn products_turn_one_after_the_other() {
+    fn products_compose_rotations_in_order() {
         let g = &Builder::new();
         let angles = [0.3, -0.7, 1.9];
         let p = Quaternion::roll_pitch_yaw(angles.map(|angle| g.number(angle)).into());

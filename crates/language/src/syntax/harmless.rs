@@ -20,7 +20,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_a_terminal_obeys_is_replaced() {
+    fn control_characters_are_replaced() {
         assert_eq!(harmless("a\u{1b}[31mb\u{7}\u{9b}2J\r\n\tθ"), "a\u{fffd}[31mb\u{fffd}\u{fffd}2J\u{fffd}\n\tθ");
         assert_eq!(harmless("\u{202e}x\u{2066}\u{200f}"), "\u{fffd}x\u{fffd}\u{fffd}");
     }

@@ -138,7 +138,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_span_finds_its_text() {
+    fn spans_are_located_in_their_source() {
         let mut sources = Sources::default();
         assert_eq!(sources.add("a", "xyz\nü!"), 0);
         let second = sources.add("b", "hello");

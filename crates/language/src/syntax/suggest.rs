@@ -109,7 +109,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn slips_are_found_and_strangers_are_not() {
+    fn misspellings_are_matched_and_unrelated_names_are_not() {
         let bodies = ["crank", "rod", "slider"];
         assert_eq!(nearest("crnk", bodies), Some("crank"));
         assert_eq!(nearest("CRANK", bodies), Some("crank"));

@@ -167,7 +167,7 @@ mod tests {
     }
 
     #[test]
-    fn what_can_be_read_in_two_ways_is_refused() {
+    fn ambiguous_numbers_are_refused() {
         for (text, message) in [
             ("1.5;2,5", "`2,5` has a decimal comma, but other numbers of the table have a decimal point"),
             ("1;2.500,5", "`2.500,5` is not a number"),
@@ -188,7 +188,7 @@ mod tests {
     }
 
     #[test]
-    fn cells_have_their_places() {
+    fn cells_have_columns_and_spans() {
         let text = "# ü\nµ ; \"a; b\"\n";
         let table = Table::read(text);
         let [line] = &table.lines[..] else { panic!("{table:?}") };

@@ -135,7 +135,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_model_names_what_is_below_its_folder_or_below_the_root() {
+    fn paths_stay_below_the_model_folder_or_the_root() {
         let place = tempfile::tempdir().unwrap();
         let folder = |name: &str| {
             let path = place.path().join(name);

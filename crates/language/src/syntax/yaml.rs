@@ -260,7 +260,7 @@ mod tests {
     }
 
     #[test]
-    fn nodes_know_their_places() {
+    fn nodes_have_spans() {
         let text = "a: { b: [1, \"x y\"] }\nc: |\n  two\n  lines\n";
         let mut diagnostics = Diagnostics::new("test", text);
         let root = parse(text, &mut diagnostics).unwrap();
@@ -276,7 +276,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_model_does_not_use_is_refused_in_its_place() {
+    fn unsupported_syntax_is_refused_with_its_span() {
         assert_eq!(errors("a: 1\na: 2"), [("`a` is given twice".to_owned(), Some(5..6))]);
         assert_eq!(errors("a: &n 1\nb: *n").len(), 2);
         assert_eq!(errors("a: *n"), [("aliases are not supported".to_owned(), Some(3..5))]);
@@ -288,7 +288,7 @@ mod tests {
     }
 
     #[test]
-    fn a_formula_that_is_cut_at_its_commas_is_told_once() {
+    fn formula_cut_at_its_commas_is_reported_once() {
         for (text, formula) in [
             ("{ a: max(1, 2), b: 3 }", "max(1, 2)"),
             ("{ a: if(x, 0, 0), b: 3 }", "if(x, 0, 0)"),

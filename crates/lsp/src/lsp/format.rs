@@ -207,7 +207,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn white_space_changes_and_nothing_else() {
+    fn formatting_changes_only_white_space() {
         let text = "\n\n# a model\nmodel:   m   \nbodies:\n    crank: {mass: 1,inertia: 2 ,points: {A: [0,1]}}   # heavy\n\n\n\n    # the rod\n    \
                     rod:\n          mass: 1\noutputs: { x: crank.x }";
         let wanted = "# a model\nmodel:   m\nbodies:\n  crank: { mass: 1, inertia: 2, points: { A: [0, 1] } }   # heavy\n\n  # the rod\n  \
@@ -217,7 +217,7 @@ mod tests {
     }
 
     #[test]
-    fn texts_and_lists_of_several_lines_stay_what_they_are() {
+    fn multi_line_texts_and_lists_keep_their_value() {
         let text = "a: |\n    one  \n\n      two\nb:\n- 1\n-   2\nc: [1,\n    2,\n    3]\n";
         let wanted = "a: |\n    one  \n\n      two\nb:\n  - 1\n  -   2\nc: [1,\n    2,\n    3]\n";
         assert_eq!(formatted(text).as_deref(), Some(wanted));

@@ -155,7 +155,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn texts_that_help_proposes() {
+    fn fixes_apply_proposed_replacements() {
         let fixed = |text: &str, span: Span, help: &str| {
             let (span, new) = replaced(text, &span, suggest::replacement(help)?)?;
             let mut text = text.to_owned();

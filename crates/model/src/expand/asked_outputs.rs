@@ -40,14 +40,14 @@ simulation: { duration: 1 }
     }
 
     #[test]
-    fn outputs_that_are_asked_for_stand_in_place_of_the_models() {
+    fn requested_outputs_replace_those_of_the_model() {
         let model = read(&[("place", "bar.x"), ("turn", "bar.angle")], "").description.unwrap();
         let found: Vec<[&str; 2]> = model.outputs.iter().map(|own| [own.name.as_str(), own.unit.as_str()]).collect();
         assert_eq!(found, [["place", "m"], ["turn", "rad"]]);
     }
 
     #[test]
-    fn what_is_wrong_with_them_is_reported_in_their_text() {
+    fn errors_in_requested_outputs_have_positions() {
         for (outputs, message, place) in [
             ([("x", "bar.x"), ("y", "1 + baz.x")], "unknown body or joint `baz`", (2, 8)),
             ([("a-b", "bar.x"), ("y", "bar.y")], "`a-b` cannot be the name of an output", (1, 1)),

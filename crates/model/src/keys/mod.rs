@@ -97,7 +97,7 @@ mod tests {
     }
 
     #[test]
-    fn the_reader_and_the_schema_know_the_same_keys() {
+    fn reader_and_schema_have_the_same_keys() {
         same_keys::<File>();
         same_keys::<BlackBoxFile>();
         same_keys::<RefineFile>();

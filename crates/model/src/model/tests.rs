@@ -38,7 +38,7 @@ fn close(found: [f64; 3], wanted: [f64; 3]) {
 }
 
 #[test]
-fn the_slider_crank_is_what_its_file_says() {
+fn slider_crank_is_read_from_its_file() {
     let reading = read_str("models/slider_crank.yaml", SLIDER_CRANK, &[]);
     assert!(reading.diagnostics.is_empty(), "{}", reading.diagnostics);
     let model = reading.description.unwrap();
@@ -140,7 +140,7 @@ fn an_interval_without_width_is_a_certain_parameter() {
 }
 
 #[test]
-fn scenes_take_every_form() {
+fn scenes_accept_every_notation_of_tolerances() {
     for (written, wanted) in [
         ("0.3 ± 1%", [0.3, 0.297, 0.303]),
         ("± 5%", [0.2, 0.19, 0.21]),
@@ -182,7 +182,7 @@ fn overrides_replace_value_and_tolerance() {
 }
 
 #[test]
-fn parameters_are_put_in_an_order_that_can_be_computed() {
+fn parameters_are_sorted_by_dependence() {
     let order = |parameters: &str| -> Vec<String> {
         let text = BAR.replace("parameters:\n", &format!("parameters:\n{parameters}"));
         good(&text).parameters.into_iter().map(|parameter| parameter.name).collect()
@@ -292,7 +292,7 @@ fn warnings_do_not_stop_a_model() {
 }
 
 #[test]
-fn records_are_for_machines() {
+fn diagnostics_are_serialised_as_json() {
     let diagnostics = load_str("x.yaml", &BAR.replace("bar.angle", "bra.angle"), &[]).unwrap_err();
     let json = serde_json::to_value(diagnostics.records()).unwrap();
     assert_eq!(
@@ -305,7 +305,7 @@ fn records_are_for_machines() {
 }
 
 #[test]
-fn what_leaves_the_plane_makes_a_model_spatial() {
+fn parts_outside_the_plane_make_a_model_spatial() {
     let in_bar = |part: &str| BAR.replace("points: { A: [-l/2, 0] }", part).replace("bar.angle", "bar.x");
     let joint = |joint: &str| BAR.replace("joints: {}", joint).replace("bar.angle", "bar.x");
     let effect = |effect: &str| BAR.replace("effects: {}", effect).replace("bar.angle", "bar.x");
@@ -350,7 +350,7 @@ fn what_leaves_the_plane_makes_a_model_spatial() {
 
 /// Names are searched for among all, and formulas checked at the ends of every interval: neither may take minutes.
 #[test]
-fn more_parameters_than_anyone_has_are_refused() {
+fn excessive_numbers_of_parameters_are_refused() {
     let with = |count: usize, value: &str| {
         let lines: String = (0..count).map(|index| format!("  p{index}: {value}\n")).collect();
         let text = BAR.replace("parameters:\n", &format!("parameters:\n{lines}"));

@@ -172,7 +172,7 @@ mod tests {
     ";
 
     #[test]
-    fn a_witness_leaves_nothing_uncertain() {
+    fn replayed_witness_leaves_no_uncertain_parameter() {
         let mut model = load_str("m.yaml", MODEL, &[]).unwrap();
         assert_eq!(model.uncertain().count(), 2);
         let witness = Witness::parse("# parameter k = 66\nt,push\n0,2\n0.5,2\n0.500000001,-2\n1,-2\n").unwrap();

@@ -90,7 +90,7 @@ mod tests {
     }
 
     #[test]
-    fn texts_stand_for_files() {
+    fn texts_replace_files() {
         let robot = include_str!("../../../../models/arm.urdf");
         let answer = asked("check", &json!({ "model": "arm.urdf", "files": { "arm.urdf": robot } }));
         assert_eq!((&answer["diagnostics"], &answer["name"]), (&json!([]), &json!("arm")), "{answer}");
@@ -98,7 +98,7 @@ mod tests {
     }
 
     #[test]
-    fn errors_have_places() {
+    fn errors_have_positions() {
         let answer = asked("run", &json!({ "files": { "m/a.yaml": "model: a\nbodys: {}\n" } }));
         let found = answer["diagnostics"].as_array().unwrap();
         let is_there = |record: &&Value| record["line"] == 2 && record["file"] == "m/a.yaml";
@@ -107,7 +107,7 @@ mod tests {
     }
 
     #[test]
-    fn a_question_that_cannot_be_read_says_so() {
+    fn unreadable_question_is_reported() {
         let answer: Value = serde_json::from_slice(&answer(b"{}", &Silent)).unwrap();
         assert!(
             answer["error"].as_str().unwrap().starts_with("the question cannot be read: missing field"),

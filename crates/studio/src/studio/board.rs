@@ -64,7 +64,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_page_gets_what_it_has_not_seen() {
+    fn page_receives_only_new_topics() {
         let board = Board::default();
         board.put("a", json!(1));
         board.put("b", json!(2));

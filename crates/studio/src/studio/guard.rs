@@ -87,7 +87,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn only_the_own_page_with_its_token_is_answered() {
+    fn only_the_studios_own_page_with_token_is_admitted() {
         let guard = Guard::new(4711).unwrap();
         let token = guard.token.clone();
         assert_eq!((token.len(), guard.address()), (32, format!("http://127.0.0.1:4711/{token}/")));

@@ -40,7 +40,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_module_that_one_imports_is_served_and_no_name_is_twice() {
+    fn all_imported_modules_are_served_under_distinct_names() {
         for (name, text) in MODULES {
             assert!(report_module(name).is_none(), "{name}");
             for import in text.split("from './").skip(1) {

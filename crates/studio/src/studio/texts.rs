@@ -205,7 +205,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_text_is_saved_with_its_line_ends_and_not_over_another() {
+    fn saving_keeps_line_ends_and_foreign_changes() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("m.yaml");
         fs::write(&path, "a: 1\r\nb: 2\r\n").unwrap();

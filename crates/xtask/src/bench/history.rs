@@ -116,7 +116,7 @@ mod tests {
     }
 
     #[test]
-    fn rows_are_in_the_order_of_dates_one_a_version() {
+    fn rows_are_sorted_by_date_with_one_per_version() {
         let mut history = History::default();
         history.add(row(&[("version", "0.2.0"), ("date", "2027-01-01"), ("time a.yaml", "8")]));
         history.add(row(&[("version", "0.1.0"), ("date", "2026-12-01"), ("instructions a.yaml", "50")]));
@@ -132,7 +132,7 @@ mod tests {
     }
 
     #[test]
-    fn lines_that_are_none_are_named() {
+    fn malformed_lines_are_named() {
         let head = OF_ROW.join(",");
         assert_eq!(History::read(&format!("{head},a\n1,2,3,4,5\n")).unwrap_err(), "line 2 has 5 cells, not 6");
         assert!(History::read("a,b\n").unwrap_err().starts_with("line 1 does not begin with version,date"));

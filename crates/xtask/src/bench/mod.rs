@@ -147,7 +147,7 @@ mod tests {
 
     /// Nobody writes a figure by hand: page and drawing are those of the committed table.
     #[test]
-    fn the_committed_page_is_that_of_the_table() {
+    fn committed_page_matches_the_table() {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
         let history = history(&root).unwrap();
         assert!(!history.rows.is_empty());

@@ -142,7 +142,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn changes_and_curves_are_those_of_the_table() {
+    fn changes_and_curves_match_the_table() {
         let text = "version,date,commit,processor,compiler,instructions a.yaml,time a.yaml,time Exudyn 1.13.6: a.yaml\n\
                     0.1.0,2026-12-01,abc,CPU,rustc,200,,\n0.2.0,2027-01-02,def,CPU,rustc,220,31.5,630\n";
         let history = History::read(text).unwrap();

@@ -44,7 +44,7 @@ mod tests {
 
     /// Newcombe, Statistics in Medicine 17 (1998) 857, table I, method 5, to the four digits that it has.
     #[test]
-    fn intervals_are_those_of_newcombes_table() {
+    fn intervals_match_newcombes_table() {
         for (count, of, published) in [
             (81, 263, [0.2527, 0.3676]),
             (15, 148, [0.0578, 0.1617]),

@@ -163,7 +163,7 @@ mod tests {
     }
 
     #[test]
-    fn versions_are_those_that_are_pinned() {
+    fn pinned_versions_are_read() {
         let text = "EXUDYN = \"exudyn==1.13.6\"\nROBOTS = [\"mujoco==4.0.0\", \"pin==4.1.0\"]\n";
         assert_eq!(["exudyn", "pin", "drake"].map(|package| pin(text, package)), ["1.13.6", "4.1.0", "no version"]);
     }

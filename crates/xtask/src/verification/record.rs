@@ -131,7 +131,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn sections_of_another_run_take_the_place_of_older_ones() {
+    fn newer_sections_replace_older_ones() {
         let of = |commit: &str, claims: &[&str]| Record {
             on: Circumstances { commit: commit.to_owned(), ..Circumstances::default() },
             sections: claims.iter().map(|&claim| Section { claim: claim.to_owned(), ..Section::default() }).collect(),
@@ -144,7 +144,7 @@ mod tests {
     }
 
     #[test]
-    fn lines_of_tests_are_read_and_others_are_named() {
+    fn lines_of_tests_are_read_and_malformed_ones_named() {
         let line = r#"{"case":"a","claim":"c","figures":[{"name":"error","value":null,"high":1},{"name":"n","count":1,"of":29,"high":null}]}"#;
         let read = cases(&format!("{line}\n\n{line}\n")).unwrap();
         assert_eq!((read.len(), read[0].figures[0].value, read[0].figures[1].of), (2, None, Some(29)));

@@ -41,7 +41,7 @@ fn a_claim_that_holds_shows_its_figures_and_limits() {
 }
 
 #[test]
-fn a_claim_that_fails_is_in_the_summary_and_in_the_exit_status() {
+fn failed_claim_is_in_the_summary_and_the_exit_status() {
     let mut record = holding();
     record.sections[3].cases[0].figures[0].value = Some(2e-6);
     assert!(!is_success(&record));
@@ -56,7 +56,7 @@ fn a_claim_that_fails_is_in_the_summary_and_in_the_exit_status() {
 }
 
 #[test]
-fn what_a_machine_lacks_is_told_and_does_not_fail() {
+fn missing_resources_are_reported_without_failure() {
     let mut record = holding();
     let adams = record.sections.iter_mut().find(|section| section.claim == "adams").unwrap();
     adams.cases.clear();
@@ -67,7 +67,7 @@ fn what_a_machine_lacks_is_told_and_does_not_fail() {
 }
 
 #[test]
-fn exceptions_and_shares_stand_with_their_reasons_and_intervals() {
+fn exceptions_have_reasons_and_shares_intervals() {
     let mut record = holding();
     let mut excepted = record.sections[1].cases[0].clone();
     excepted.exception = Some("not smooth".to_owned());
@@ -84,7 +84,7 @@ fn exceptions_and_shares_stand_with_their_reasons_and_intervals() {
 
 /// No figure is written by hand: the committed pages are those of the committed measurements.
 #[test]
-fn committed_pages_are_those_of_the_measurements() {
+fn committed_pages_match_the_measurements() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/verification");
     let record = read(&folder.join(MEASURED)).unwrap();
     assert!(!record.on.quick);

@@ -115,7 +115,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_measured_is_no_success() {
+    fn claim_without_measurements_fails() {
         let run = |error: Option<&str>, left_out: Option<&str>| Run {
             error: error.map(str::to_owned),
             left_out: left_out.map(str::to_owned),

@@ -94,7 +94,7 @@ mod tests {
     use crate::results::cost_example::sample;
 
     #[test]
-    fn a_row_a_setting() {
+    fn each_setting_has_a_row() {
         let mut study = sample();
         study.bounds.truncate(1);
         study.bounds.push(CostPoint {

@@ -234,7 +234,7 @@ mod tests {
     use crate::results::cost_example::{sample, study};
 
     #[test]
-    fn the_plot_shows_every_method_and_leaves_out_what_has_no_result() {
+    fn plot_shows_every_method_and_omits_missing_results() {
         let mut whole = sample();
         whole.bounds.push(CostPoint::without_result(COMPOSED, Stepping::Fixed(1e-2)));
         for study in [whole, study(vec![])] {

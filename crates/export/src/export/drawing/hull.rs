@@ -43,7 +43,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_hull_has_the_outer_places() {
+    fn hull_has_the_outermost_points() {
         let square = [[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [0.0, 10.0], [5.0, 5.0], [0.0, 0.2]].map(Px::from);
         assert_eq!(hull(square.to_vec()).len(), 4);
         let straight = [[0.0, 0.0], [5.0, 5.0], [10.0, 10.0]].map(Px::from);

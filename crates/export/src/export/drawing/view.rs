@@ -149,7 +149,7 @@ mod tests {
     }
 
     #[test]
-    fn an_axis_at_the_reader_has_no_direction() {
+    fn axis_normal_to_the_view_has_no_direction() {
         let scale = PLANE[0].scale(&[], Px::new(2.0, 3.0));
         assert!((scale - 2.0).abs() < 1e-12);
         let view = View::centred(PLANE[0], &[], scale, Px::zeros(), Px::new(2.0, 3.0));

@@ -130,7 +130,7 @@ mod tests {
     }
 
     #[test]
-    fn a_unit_that_is_asked_for_is_kept() {
+    fn requested_unit_is_kept() {
         let degrees = ShownUnit { text: "deg", si: std::f64::consts::PI / 180.0 };
         let axis = Axis::fit([0.0, std::f64::consts::PI].into_iter(), degrees, 4, 0.0, 0.0);
         assert_eq!(
@@ -144,7 +144,7 @@ mod tests {
     }
 
     #[test]
-    fn constants_extremes_and_nothing_have_an_axis() {
+    fn axis_fits_constants_extremes_and_empty_data() {
         let nothing: [f64; 0] = [];
         let cases: [&[f64]; 9] = [
             &nothing,

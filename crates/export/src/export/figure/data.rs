@@ -131,7 +131,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_have_the_digits_that_can_be_seen() {
+    fn numbers_are_rounded_to_visible_digits() {
         assert_eq!(rounded(0.123_456_789, 1e-4), 0.1235);
         assert_eq!(rounded(-1e-9, 1e-4).to_bits(), 0.0_f64.to_bits());
         let axis = Axis::fit([25_000.0, 26_000.0].into_iter(), "N", 5, 0.0, 0.0);

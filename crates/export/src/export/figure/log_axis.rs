@@ -70,7 +70,7 @@ mod tests {
     }
 
     #[test]
-    fn a_single_value_nothing_and_many_decades_have_an_axis() {
+    fn axis_fits_one_value_no_values_and_many_decades() {
         assert_eq!(LogAxis::fit([1.0].into_iter()), LogAxis { first: 0, last: 1 });
         assert_eq!(LogAxis::fit([].into_iter()), LogAxis { first: -1, last: 0 });
         let wide = LogAxis::fit([1e-20, 1.0].into_iter()).ticks();

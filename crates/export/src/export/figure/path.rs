@@ -158,7 +158,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_straight_has_two_points_and_what_is_bent_stays_in_place() {
+    fn lines_keep_two_points_and_curves_their_shape() {
         let line = thinned((0..500).map(|i| (f64::from(i), 3.0)));
         assert_eq!(line, [(0.0, 3.0), (499.0, 3.0)]);
         let curve = |x: f64| 80.0 * (x / 60.0).sin();

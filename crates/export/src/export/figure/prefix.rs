@@ -120,7 +120,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn units_are_set_as_in_print() {
+    fn units_are_typeset() {
         assert_eq!(pretty_unit("kg*m^2"), "kg·m²");
         assert_eq!(pretty_unit("rad*s^-1"), "rad·s⁻¹");
         assert_eq!(pretty_unit("m^x"), "m^x");

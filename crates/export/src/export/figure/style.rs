@@ -106,7 +106,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn colours_of_the_palette_stay_apart_in_grey_and_on_dark_paper() {
+    fn colours_of_the_palette_differ_in_grey_and_on_dark_paper() {
         let all: Vec<Color> = (0..20).map(Color::of).collect();
         for (index, color) in all.iter().enumerate() {
             assert!(!all[..index].contains(color), "{index}");

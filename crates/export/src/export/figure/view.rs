@@ -51,7 +51,7 @@ mod tests {
     }
 
     #[test]
-    fn only_what_is_far_wider_than_the_narrowest_goes_beyond() {
+    fn only_bands_far_wider_than_the_narrowest_are_clipped() {
         let (values, beyond) = in_view(&[0.0], &[band(5.9), band(1.0), band(7.0), band(1e300)], 6.0);
         assert_eq!(beyond, [false, false, true, true]);
         let (low, high) = extent(values.iter());
@@ -59,7 +59,7 @@ mod tests {
     }
 
     #[test]
-    fn constants_and_nothing_hide_nothing() {
+    fn constants_and_empty_data_clip_no_band() {
         assert_eq!(in_view(&[0.0], &[band(0.0), band(3.0)], 6.0).1, [false, false]);
         assert_eq!(in_view(&[f64::NAN], &[band(f64::NAN)], 6.0).1, [false]);
         assert_eq!(in_view(&[0.0], &[band(f64::MAX), band(1.0)], 6.0).1, [true, false]);

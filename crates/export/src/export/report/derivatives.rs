@@ -69,7 +69,7 @@ mod tests {
     use crate::results::{OutputBounds, ParameterSummary};
 
     #[test]
-    fn parameters_without_influence_are_left_out() {
+    fn parameters_without_influence_are_omitted() {
         let parameter = |name: &str, half: f64| ParameterSummary {
             name: name.into(),
             unit: "m".into(),

@@ -101,7 +101,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn nothing_ends_a_script_or_an_attribute() {
+    fn escaped_text_ends_no_script_or_attribute() {
         let hostile = "</script><img src=x onerror=\"alert('1')\">&\u{2028}";
         let text = escaped(hostile);
         assert!(!text.contains(['<', '>', '"', '\'']), "{text}");
@@ -111,13 +111,13 @@ mod tests {
     }
 
     #[test]
-    fn identifiers_of_figures_are_apart() {
+    fn figures_have_distinct_identifiers() {
         let svg = "<?xml version=\"1.0\"?>\n<svg><clipPath id=\"a\"/><g clip-path=\"url(#a)\"/></svg>\n";
         assert_eq!(inline_svg(svg, "s1-"), "<svg><clipPath id=\"s1-a\"/><g clip-path=\"url(#s1-a)\"/></svg>");
     }
 
     #[test]
-    fn what_acts_is_no_figure() {
+    fn active_content_is_refused_in_figures() {
         let figure = |content: &str| {
             is_figure(&format!("<svg xmlns=\"http://www.w3.org/2000/svg\"><style>{STYLE}</style>{content}</svg>"))
         };

@@ -41,7 +41,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_come_back_within_half_a_unit() {
+    fn packed_numbers_are_restored_within_half_a_unit() {
         let values: Vec<f64> = (0..300).map(|i| if i % 3 == 0 { 1e-7 } else { 5.0 } * f64::from(i - 150)).collect();
         let packed = Packed::new(&values, 3);
         let bytes = BASE64.decode(packed.data.as_bytes()).unwrap();

@@ -54,7 +54,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_cannot_act() {
+    fn names_are_escaped() {
         let table = Section::Table("a", vec!["<b>".to_owned()], vec![vec!["<script>".to_owned()]]);
         let page = plain_page("<i>", &[table, Section::Text("x < 1".to_owned())]);
         assert!(page.contains("<td>&lt;script&gt;</td>") && page.contains("x &lt; 1") && !page.contains("<script>"));

@@ -191,7 +191,7 @@ mod tests {
     }
 
     #[test]
-    fn an_error_that_grows_hides_nothing() {
+    fn grown_error_counts_as_a_change() {
         let [before, doubled, grown] = [1e-2, 2e-2, 3e-2].map(|error| snapshot(&bounds(&[1.0, 2.0], 0.5, error)));
         assert_eq!(moved(&before, &doubled), []);
         assert_eq!(names(&moved(&before, &grown)), ["x.scan.error"]);
@@ -201,7 +201,7 @@ mod tests {
     }
 
     #[test]
-    fn what_comes_goes_or_is_unknown_has_moved() {
+    fn new_removed_and_unknown_outputs_count_as_changes() {
         let before = bounds(&[1.0, 2.0], 0.5, 1e-2);
         let mut renamed = before.clone();
         renamed.outputs[0].name = "y".into();

@@ -147,7 +147,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_was_written_is_read() {
+    fn written_snapshot_is_read_back() {
         let table = snapshot_table(&bounds(&[1.0, 2.0, f64::NAN], 0.5, 1e-3));
         let read = Snapshot::read(&table).unwrap();
         assert_eq!(read, Snapshot::read(&snapshot_file("models/x.yaml", &table)).unwrap());
@@ -159,7 +159,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_snapshot_is_told_with_its_line() {
+    fn malformed_snapshot_is_reported_with_its_line() {
         let wrong = |text: &str| Snapshot::read(text).unwrap_err().to_string();
         assert_eq!(wrong("model: x\nbodies:\n"), "line 2: no headings: `t nominal …`");
         assert_eq!(wrong("---\nx\n"), "line 1: the head does not end with `---`");

@@ -134,7 +134,7 @@ x [m]
     }
 
     #[test]
-    fn what_stands_still_has_digits_too() {
+    fn constant_outputs_have_digits() {
         let decimals = |nominal: &[f64], width| decimals(&bounds(nominal, width, 0.0).outputs[0]);
         assert_eq!(decimals(&[0.0, 0.0], 0.0), 0);
         assert_eq!(decimals(&[9.81, 9.81], 0.0), 4);

@@ -73,7 +73,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_arc_has_its_radius_and_a_quarter_is_a_quarter() {
+    fn arcs_have_their_radius_and_angle() {
         let bend = |to: [f64; 3], radius: Option<f64>| Bend { to, radius };
         let line = [bend([1.0, 0.0, 0.0], None), bend([0.0, 1.0, 0.0], Some(1.0))];
         let points = polyline(&line, false);

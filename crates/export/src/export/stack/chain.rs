@@ -98,7 +98,7 @@ mod tests {
     }
 
     #[test]
-    fn links_follow_one_another_with_their_signs() {
+    fn ends_of_links_are_signed_partial_sums() {
         let ends = ends(&chain().links);
         let wanted = [0.0, 30e-3, 10e-3, 1e-3];
         assert!(ends.iter().zip(wanted).all(|(end, wanted)| (end - wanted).abs() < 1e-15), "{ends:?}");

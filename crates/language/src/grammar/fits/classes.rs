@@ -195,7 +195,7 @@ mod tests {
 
     /// Limits as printed in tables of ISO 286-2, in textbooks: lower and upper deviation, µm.
     #[test]
-    fn deviations_are_those_of_published_tables() {
+    fn deviations_match_published_tables() {
         for (class, size, lower, upper) in [
             ("H7", 12.0, 0.0, 18.0),
             ("g6", 12.0, -17.0, -6.0),

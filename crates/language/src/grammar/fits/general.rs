@@ -72,7 +72,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn deviations_are_those_of_the_table() {
+    fn deviations_match_the_table() {
         for (class, size, wanted) in [
             ("ISO 2768-m", 25.0, 200.0),
             ("ISO 2768-mK", 30.0, 200.0),

@@ -80,7 +80,7 @@ mod tests {
 
     /// Multiples of I = 0.004 D + 2.1 (ISO 286-1:1988, annex A); the table rounds, and IT5 to 630 mm is further.
     #[test]
-    fn grades_are_the_formulas_rounded() {
+    fn grades_match_rounded_formulas() {
         let multiples = [
             2.0, 2.7, 3.7, 5.0, 7.0, 10.0, 16.0, 25.0, 40.0, 64.0, 100.0, 160.0, 250.0, 400.0, 640.0, 1e3, 1.6e3, 2.5e3,
         ];
@@ -95,7 +95,7 @@ mod tests {
 
     /// The formulas of ISO 286-1:1988, table 8, from which the table was rounded.
     #[test]
-    fn deviations_are_the_formulas_rounded() {
+    fn deviations_match_rounded_formulas() {
         type Formula = fn(f64) -> f64;
         let formulas: [(&str, Formula); 7] = [
             ("d", |d| -16.0 * d.powf(0.44)),

@@ -25,7 +25,7 @@ fn units_become_si() {
 
 /// By their definitions: NIST SP 811, appendix B.
 #[test]
-fn units_of_the_trade_are_exact() {
+fn customary_units_are_exact() {
     let close = |unit: &str, value: f64| {
         let found = si(1.0, unit).0;
         assert!((found - value).abs() <= 4.0 * f64::EPSILON * value, "{unit}: {found:e}, not {value:e}");
@@ -58,7 +58,7 @@ fn a_number_a_minute_is_refused() {
 }
 
 #[test]
-fn in_a_formula_a_unit_ends_where_the_formula_goes_on() {
+fn unit_within_a_formula_ends_before_the_next_operand() {
     let names = ["L", "m", "k", "l1", "s"];
     let leading = |text: &'static str| {
         let (unit, length) = Unit::leading(text, |name| names.contains(&name) || name == "pi").unwrap();
@@ -92,7 +92,7 @@ fn in_a_formula_a_unit_ends_where_the_formula_goes_on() {
 }
 
 #[test]
-fn unknown_units_are_placed_and_suggested() {
+fn unknown_units_are_located_with_suggestions() {
     let error = Unit::parse("N*sec/m").unwrap_err();
     assert_eq!((error.message.as_str(), error.span), ("unknown unit `sec`", 2..5));
     assert_eq!(Unit::parse("Mm").unwrap_err().help.unwrap(), "did you mean `mm`?");
@@ -103,7 +103,7 @@ fn unknown_units_are_placed_and_suggested() {
 }
 
 #[test]
-fn quantities_are_told_from_formulas() {
+fn quantities_are_distinguished_from_formulas() {
     assert_eq!(number_and_unit("120 mm"), Some((120.0, "mm", 4)));
     assert_eq!(number_and_unit("-9.81m/s^2"), Some((-9.81, "m/s^2", 5)));
     assert_eq!(number_and_unit("1e-3 kg"), Some((1e-3, "kg", 5)));

@@ -26,7 +26,7 @@ mod tests {
     use super::matches;
 
     #[test]
-    fn stars_stand_for_anything() {
+    fn stars_match_any_text() {
         for (pattern, name, expected) in [
             ("a", "a", true),
             ("a", "ab", false),

@@ -45,7 +45,7 @@ fn the_guide_has_the_readers_table() {
 }
 
 #[test]
-fn an_element_has_one_rule_in_each_place() {
+fn each_element_has_one_rule_per_parent() {
     let mut places: Vec<(&str, &str)> =
         rules().flat_map(|rule| rule.within.split_whitespace().map(|within| (rule.tag, within))).collect();
     places.sort_unstable();

@@ -78,7 +78,7 @@ fn quaternions_are_refused_where_they_would_be_ignored() {
 }
 
 #[test]
-fn absent_limits_are_those_of_the_version() {
+fn absent_limits_follow_the_version() {
     let limits = |version: &str, details: &str| {
         let value = |number: &Option<Number>| number.as_ref().map(|number| number.value);
         let mut robot = robot(&hinge(version, details));
@@ -100,7 +100,7 @@ fn absent_limits_are_those_of_the_version() {
 }
 
 #[test]
-fn misspelt_names_are_errors_and_foreign_ones_warnings() {
+fn misspelt_names_are_errors_and_unknown_names_warnings() {
     assert_eq!(messages(&hinge("", "<limits lower='1'/>")), ["`<joint>` has no element `<limits>`"]);
     assert_eq!(messages(&hinge("", "<limit lowr='1'/>")), ["`<limit>` has no attribute `lowr`"]);
     let extension = "<dynamics stiffness_of_gears='3'/>";
@@ -113,7 +113,7 @@ fn misspelt_names_are_errors_and_foreign_ones_warnings() {
 }
 
 #[test]
-fn own_attributes_do_not_hide_the_file_s() {
+fn mbint_attributes_do_not_hide_attributes_of_urdf() {
     let text = hinge("xmlns:mbint='urn:mbint'", "<dynamics mbint:damping='5%' damping='0.25' friction='&#49;'/>");
     let robot = robot(&text);
     let joint = &robot.joints[0];
@@ -153,7 +153,7 @@ fn large_files_are_refused_early() {
 
 /// Exporters of robots write them so.
 #[test]
-fn prefixes_that_are_not_declared_are_other_programs() {
+fn undeclared_prefixes_are_ignored() {
     let head = "<?xml version='1.0'?><!-- <a:b> -->\n";
     let limit = "<limit drake:acceleration='2.5' lower='-3' upper='3' effort='1' velocity='1'/>";
     let found = robot(&format!("{head}{}", hinge("gz:version='2'", &format!("<ros:x y='1'/>{limit}"))));

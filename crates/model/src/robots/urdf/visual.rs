@@ -65,7 +65,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn shapes_and_colours_are_read_and_what_is_wrong_is_left_out() {
+    fn shapes_and_colours_are_read_and_invalid_ones_omitted() {
         let text = r#"<robot><material name="red"><color rgba="1 0 0 1"/></material><link name="a">
             <visual><origin xyz="0 0 1"/><geometry><box size="1 2 3"/></geometry><material name="red"/></visual>
             <visual><geometry><cylinder radius="0.5" length="2"/></geometry></visual>
