@@ -37,7 +37,9 @@ fn slider_shows_the_simulation_at_its_values() {
     let (place, mut session) = session(CRANK);
     let number = session.model(0)["number"].clone();
     let values = [0.2012, 0.29];
-    let found = session.post("sample", &json!({ "number": number, "values": values })).json();
+    let found = session.post("sample", &json!({ "number": number, "values": values }));
+    assert_eq!(found.status, 200, "{}", found.body);
+    let found = found.json();
     fs::write(place.path().join("points.csv"), format!("l,torque\n{},{}\n", values[0], values[1])).unwrap();
     place.run("sample m.yaml --points points.csv -o samples.csv -q", 0);
     let table = fs::read_to_string(place.path().join("samples.csv")).unwrap();
