@@ -1,6 +1,10 @@
 //! Parts of the rooms for this package's own binary, tests and benches. Not part of the library: it may change with any
 //! version.
 
+pub mod applications {
+    pub use crate::applications::language_costs;
+}
+
 pub mod assemble {
     pub use crate::assemble::{Questions, build, in_absolute_coordinates, in_joint_coordinates};
 }
@@ -49,7 +53,7 @@ pub mod simulate {
 }
 
 pub mod study {
-    pub use crate::study::{Kept, Options, language_costs, prepare, run, run_keeping};
+    pub use crate::study::{Kept, Options, prepare, run, run_keeping};
 }
 
 pub mod syntax {

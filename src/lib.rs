@@ -26,6 +26,7 @@ pub use results::{
 pub use syntax::Diagnostics;
 
 // Rooms of the crates below are reachable under their names here.
+use mbint_applications::applications;
 use mbint_engine::{c_code, simulate};
 use mbint_equations::{assemble, compile, reduce};
 use mbint_export::{export, overview};

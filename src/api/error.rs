@@ -2,9 +2,10 @@
 
 use std::fmt;
 
+use crate::applications::{AllocateError, CostError, DataError, DesignError, FitError, VerifyError};
 use crate::export::ExportError;
 use crate::model::{UnknownScene, WitnessError};
-use crate::study::{AllocateError, CostError, DataError, DesignError, FitError, GradientError, RunError, VerifyError};
+use crate::study::{GradientError, RunError};
 use crate::syntax::{Code, Coded, Diagnostics};
 
 /// Reasons why there is no model, or nothing of it could be run.

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::{Axis, Error, Study, Sweep};
+use crate::applications;
 use crate::model::{Changes, Description, Override, ParameterValue, Reading, Witness, read_rooted, read_text};
 use crate::results::{Gradients, Verification};
 use crate::study::{self, Options, RunError};
@@ -209,7 +210,7 @@ impl Model {
     /// # Errors
     /// [`Error::Run`]: the mechanism cannot be built; [`Error::Verify`]: its analysis takes no steps.
     pub fn verify(&self) -> Result<Verification, Error> {
-        Ok(study::verify(&self.description, &Options::default())?)
+        Ok(applications::verify(&self.description, &Options::default())?)
     }
 }
 

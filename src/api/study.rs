@@ -1,14 +1,14 @@
 //! A study: the methods that bound a model, and their settings.
 
 use super::{Error, Samples, StudyResult};
+use crate::applications::{
+    AllocateOptions, CostOptions, DesignOptions, Measurements, NoiseBound, allocate, cost, design, explain, fit,
+};
 use crate::methods::{BoundsRequest, Certified, Chebyshev, Expand, Method, Proof, Scan, Taylor};
 use crate::model::{Description, Formulation, NOT_OF_EXPLICIT, SchemeChoice, Stepping, refused_alpha, refused_levels};
 use crate::numerics::RangeKind;
 use crate::results::{Allocation, CostStudy, Criterion, DesignStudy, Explanation, Fit};
-use crate::study::{
-    AllocateOptions, CostOptions, DesignOptions, Measurements, NoiseBound, Options, allocate, cost, design, explain,
-    fit, run,
-};
+use crate::study::{Options, run};
 
 /// A run of a model in preparation. Methods add up; the first chosen one replaces those of the model's `bounds:`. A
 /// setting outside of its range is an [`Error::Setting`] of every question to the study.

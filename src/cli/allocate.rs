@@ -5,12 +5,13 @@ use super::console::{BOLD, Console, count, file_names};
 use super::question::ask;
 use super::run::with_folder;
 use super::{Failure, Status, interrupt, load};
+use crate::applications::{self, AllocateError, AllocateOptions};
 use crate::export::{OVERLAY, rounded, shown_unit, write_allocation};
 use crate::grammar::display_unit::ShownUnit;
 use crate::overview::{Align, Table};
 use crate::overview::{requirements, short, yields};
 use crate::results::{AllocatedTolerance, Allocation, Criterion, ToleranceZone};
-use crate::study::{self, AllocateError, AllocateOptions, RunError};
+use crate::study::RunError;
 
 pub(super) fn allocate(args: AllocateArgs, console: &mut Console) -> Result<Status, Failure> {
     let given = args.set.given()?;
@@ -19,7 +20,7 @@ pub(super) fn allocate(args: AllocateArgs, console: &mut Console) -> Result<Stat
     // An interruption preserves confirmed results of a study.
     interrupt::keep_results(true);
     let asked = AllocateOptions { share: args.share, widest: args.widest };
-    let found = ask(&model.name, &args.run, args.yes, |options| study::allocate(&model, asked, options));
+    let found = ask(&model.name, &args.run, args.yes, |options| applications::allocate(&model, asked, options));
     let found = match found {
         Ok(found) => found,
         Err(AllocateError::Run(_)) if interrupt::asked() => {

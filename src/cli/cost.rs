@@ -7,12 +7,13 @@ use super::console::{BOLD, Console, count, file_names};
 use super::progress::Progress;
 use super::run::with_folder;
 use super::{Failure, Status, interrupt, load};
+use crate::applications::{self, CostError, CostOptions};
 use crate::export::write_cost;
 use crate::methods::BoundsRequest;
 use crate::model::{Description, Stepping};
 use crate::overview::{Align, Table};
 use crate::results::{CostPoint, CostStudy, Deviation, cost_curves, pareto};
-use crate::study::{self, CostError, CostOptions, RunError};
+use crate::study::RunError;
 
 pub(super) fn cost(args: CostArgs, console: &mut Console) -> Result<Status, Failure> {
     let model = load::load(&args.model, &args.set.given()?, args.run.scene.as_ref(), console)?;
@@ -28,7 +29,7 @@ pub(super) fn cost(args: CostArgs, console: &mut Console) -> Result<Status, Fail
     };
     // The study itself decides about results to keep.
     interrupt::keep_results(true);
-    let study = match study::cost(&model, &options) {
+    let study = match applications::cost(&model, &options) {
         Ok(study) => study,
         Err(_) if interrupt::asked() => {
             drop(progress);

@@ -5,20 +5,21 @@ use super::console::{BOLD, Console, count, file_names};
 use super::question::{answer, ask};
 use super::run::with_folder;
 use super::{Failure, Status, interrupt, load};
+use crate::applications::{self, DesignError, DesignOptions};
 use crate::export::tuning::TUNING as EXPORT;
 use crate::export::{DESIGN_OVERLAY, rounded, shown_unit, write_design};
 use crate::grammar::display_unit::ShownUnit;
 use crate::overview::{Align, Table};
 use crate::overview::{requirements, short};
 use crate::results::{Allocation, Criterion, DesignPoint, DesignStudy, DesignTrade, ToleranceZone};
-use crate::study::{self, DesignError, DesignOptions, RunError};
+use crate::study::RunError;
 
 pub(super) fn design(args: DesignArgs, console: &mut Console) -> Result<Status, Failure> {
     let given = args.set.given()?;
     let model = load::load(&args.model, &given, args.run.scene.as_ref(), console)?;
     let Some((model, folder)) = with_folder(model, args.output.as_ref())? else { return Ok(Status::Wrong) };
     let found = ask(&model.name, &args.run, args.yes, |options| {
-        study::design(&model, DesignOptions { share: args.share }, options)
+        applications::design(&model, DesignOptions { share: args.share }, options)
     });
     let found = match found {
         Ok(found) => found,

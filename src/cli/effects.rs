@@ -4,11 +4,11 @@ use serde::Serialize;
 
 use super::Failure;
 use super::console::BOLD;
+use crate::applications::language_costs;
 use crate::elements::effects::EffectKind;
 use crate::grammar::{ElementDocs, KeyDocs};
 use crate::overview::{Align, Table};
 use crate::results::EffectCost;
-use crate::study::language_costs;
 
 /// An effect with its cost.
 #[derive(Debug, Serialize)]

@@ -5,10 +5,10 @@ use super::console::{BOLD, Console, count, to_json};
 use super::effects::adds;
 use super::tuning::TUNING;
 use super::{Failure, Status, effects, joints, load, methods};
+use crate::applications;
 use crate::elements::JointKind;
 use crate::overview::{Align, Table};
 use crate::results::{Decision, Explanation};
-use crate::study;
 use crate::syntax::Code;
 use serde::Serialize;
 
@@ -22,8 +22,8 @@ pub(super) fn explain(args: &ExplainArgs, console: &mut Console) -> Result<Statu
     let Some(model) = load::load(path, &args.set.given()?, args.scene.as_ref(), console)? else {
         return Ok(Status::Wrong);
     };
-    let explanation =
-        study::explain(&model).map_err(|error| Failure::wrong(format!("{}: {error}", path.display())).of(&error))?;
+    let explanation = applications::explain(&model)
+        .map_err(|error| Failure::wrong(format!("{}: {error}", path.display())).of(&error))?;
     console.print(&match args.format {
         Format::Text => text(&explanation),
         Format::Json => to_json(&explanation)?,

@@ -6,13 +6,14 @@ use super::question::{answer, ask};
 use super::run::with_folder;
 use super::tuning::TUNING;
 use super::{Failure, Status, interrupt, load};
+use crate::applications::{self, FitError, Measurements};
 use crate::export::{FIT_OVERLAY, rounded, write_fit};
 use crate::grammar::display_unit::ShownUnit;
 use crate::model::{is_standard_input, shown};
 use crate::overview::short;
 use crate::overview::{Align, Table};
 use crate::results::{ConsistentSet, Fit, Unexplained};
-use crate::study::{self, FitError, Measurements, RunError};
+use crate::study::RunError;
 
 pub(super) fn fit(args: FitArgs, console: &mut Console) -> Result<Status, Failure> {
     let given = args.set.given()?;
@@ -27,7 +28,7 @@ pub(super) fn fit(args: FitArgs, console: &mut Console) -> Result<Status, Failur
     let table = table.map_err(|error| of_data(&error))?;
     let measurements = Measurements::read(&table, &model, &args.noise).map_err(|error| of_data(&error).of(&error))?;
     let Some((model, folder)) = with_folder(Some(model), args.output.as_ref())? else { return Ok(Status::Wrong) };
-    let found = ask(&model.name, &args.run, args.yes, |options| study::fit(&model, &measurements, options));
+    let found = ask(&model.name, &args.run, args.yes, |options| applications::fit(&model, &measurements, options));
     let found = match found {
         Ok(found) => found,
         Err(_) if interrupt::asked() => return Ok(Status::Interrupted),

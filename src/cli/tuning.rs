@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use crate::{export, overview, study};
+use crate::{applications, export, overview, study};
 use symdiff::constants::{Constant, tuning};
 
 tuning! {
@@ -47,6 +47,7 @@ tuning! {
 pub(super) fn tuning() -> Vec<Constant> {
     [
         study::tuning(),
+        applications::tuning(),
         export::tuning::Tuning::constants(),
         overview::tuning::Tuning::constants(),
         mbint_lsp::tuning::Tuning::constants(),

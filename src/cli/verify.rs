@@ -4,20 +4,21 @@ use super::args::VerifyArgs;
 use super::console::{BOLD, Console, count};
 use super::question::{answer, ask};
 use super::{Failure, Status, load};
+use crate::applications::{self, VerifyError};
 use crate::export::{Suite, write_junit, write_verification};
 use crate::overview::short;
 use crate::overview::{Align, Table};
 use crate::results::{
     Convergence, DerivativeCheck, EffectBalance, Exchange, FormulationVerification, PowerBalance, Verification,
 };
-use crate::study::{self, RunError, VerifyError};
+use crate::study::RunError;
 
 pub(super) fn verify(args: &VerifyArgs, console: &mut Console) -> Result<Status, Failure> {
     let given = args.set.given()?;
     let Some(model) = load::load(&args.model, &given, args.run.scene.as_ref(), console)? else {
         return Ok(Status::Wrong);
     };
-    let found = ask(&model.name, &args.run, true, |options| study::verify(&model, options));
+    let found = ask(&model.name, &args.run, true, |options| applications::verify(&model, options));
     let found = match found {
         Err(VerifyError::Interrupted) => return Ok(Status::Interrupted),
         found => found.map_err(|error| {

@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use mbint::Model;
-use mbint::inner::{model, study};
+use mbint::inner::{applications, model};
 
 const PAGE: &str = include_str!("../../docs/guides/effects.md");
 
@@ -60,7 +60,7 @@ fn every_picture_is_shown_next_to_an_example() {
 #[test]
 fn the_reference_of_effects_is_current() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/reference/effects.md");
-    let current = mbint::inner::export::effects_page(&study::language_costs().unwrap());
+    let current = mbint::inner::export::effects_page(&applications::language_costs().unwrap());
     if std::env::var_os("MBINT_UPDATE_DOCS").is_some() {
         std::fs::write(&path, &current).unwrap();
     }

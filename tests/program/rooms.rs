@@ -6,7 +6,7 @@ use std::fs;
 use std::path::Path;
 
 /// Sources of the crates with their rooms. Each room stands on those before it, and knows none after it.
-const CRATES: [(&str, &[&str]); 14] = [
+const CRATES: [(&str, &[&str]); 15] = [
     ("crates/numerics/src", &["numerics"]),
     ("crates/certificate/src", &["certificate"]),
     ("crates/language/src", &["syntax", "grammar", "multibody"]),
@@ -16,6 +16,7 @@ const CRATES: [(&str, &[&str]); 14] = [
     ("crates/equations/src", &["reduce", "assemble", "compile"]),
     ("crates/engine/src", &["simulate", "c_code"]),
     ("crates/study/src", &["results", "store", "black_box", "study"]),
+    ("crates/applications/src", &["applications"]),
     ("crates/export/src", &["export", "overview"]),
     ("crates/lsp/src", &["lsp"]),
     ("crates/studio/src", &["studio"]),

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::{Format, OneRunArgs, SetArgs};
-use crate::study::NoiseBound;
+use crate::applications::NoiseBound;
 
 #[derive(Debug, Args)]
 #[command(after_help = FIT_HELP)]

@@ -6,53 +6,44 @@
 //! (`ensemble`), block by block of output rows, so that memory does not grow with samples × steps; `attained` searches
 //! ends along gradients, `reduced` bounds numbers of a motion and decides requirements, and `deterministic` is the case
 //! without uncertain parameters. `answers` makes bounds, a summary and stored surrogates of the findings. `feasible`
-//! bounds the part of a box in which there is a motion, `cost` runs one model with many settings to find the cost of
-//! accuracy, `explain` lists the parts of a compiled model, and `price` estimates a run. `drawing` and `motion` show
-//! the mechanism, `internal` confines a panic, `statistics` evaluates stored surrogates, and `allocate` searches
-//! tolerances. `fit` compares with measured values, `design` searches nominal values, and `verify` measures orders
-//! against manufactured motions.
+//! bounds the part of a box in which there is a motion, and `price` estimates a run. `drawing` and `motion` show the
+//! mechanism, `internal` confines a panic, and `statistics` evaluates stored surrogates.
 //!
 //! A type has its methods in its own file; other files have functions that take it. So the imports of a file are
 //! all that it uses, and a test finds circles.
 //!
 //! [`Ensemble`]: crate::methods::Ensemble
 
-mod allocate;
 mod answers;
 mod attained;
-mod black_box;
+pub mod black_box;
 mod bounding;
 mod chains;
 mod code;
-mod cost;
-mod design;
 mod deterministic;
 mod drawing;
 mod ensemble;
 mod excited;
-mod explain;
 mod feasible;
-mod fit;
-mod formulation;
+pub mod formulation;
 mod gradient;
 mod internal;
 mod motion;
-mod prepared;
+pub mod prepared;
 mod price;
 mod problem;
 mod ready;
-mod reduced;
+pub mod reduced;
 mod sample;
 mod shard;
 mod single;
 mod sources;
-mod statistics;
+pub mod statistics;
 mod stepping;
 mod structure;
-mod subsystems;
+pub mod subsystems;
 mod threads;
 mod tuning;
-mod verify;
 mod zones;
 
 use crate::assemble::{BuildError, Questions};
@@ -67,15 +58,10 @@ use crate::syntax::{Code, Coded};
 
 use prepared::Prepared;
 
-pub use allocate::{AllocateError, AllocateOptions, allocate};
 pub use answers::{Evaluator, Kept, assemblies};
 pub use code::{CodeError, code};
-pub use cost::{CostError, CostOptions, cost};
-pub use design::{DesignError, DesignOptions, design};
 pub use drawing::drawing;
-pub use explain::{explain, language_costs};
 pub use feasible::Survey;
-pub use fit::{DataError, FitError, Measurements, NoiseBound, fit};
 pub use gradient::{GradientError, gradient};
 pub use internal::{InternalError, caught, record_panics};
 pub use motion::{Grip, Hand, Held, MotionOptions, Movable, REPORT_SIZE, report_motion};
@@ -84,11 +70,11 @@ pub use ready::{COMPILING, Ready, built, equations, ready};
 pub use sample::{ChosenSamples, Sampled, sample};
 pub use shard::simulate_parts;
 pub use sources::sources;
+pub use stepping::integration_decision;
 pub use structure::structure;
 pub use subsystems::uncertain;
 pub use threads::{Threads, pool};
 pub use tuning::tuning;
-pub use verify::{VerifyError, verify};
 
 /// Options of a run.
 pub struct Options<'a> {
@@ -233,12 +219,12 @@ pub fn prepare_whole(description: &Description) -> Result<Simulator, RunError> {
 }
 
 /// The model's scheme.
-fn scheme(description: &Description) -> Scheme {
+pub fn scheme(description: &Description) -> Scheme {
     Scheme::Hht { alpha: description.simulation.alpha }
 }
 
 /// Step size for computations before the first step.
-fn first_step(description: &Description) -> f64 {
+pub fn first_step(description: &Description) -> f64 {
     match description.simulation.stepping {
         Stepping::Fixed(step) => step,
         Stepping::Tolerance(_) => 1e-2 * description.simulation.output_step,

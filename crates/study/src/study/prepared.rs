@@ -63,7 +63,7 @@ impl Prepared {
 }
 
 /// Questions to a subsystem's equations.
-pub(super) fn questions(subsystem: &Subsystem) -> Questions<'_> {
+pub fn questions(subsystem: &Subsystem) -> Questions<'_> {
     Questions { merged: Cow::Borrowed(&subsystem.merged), ..Questions::of(&subsystem.description) }
 }
 
@@ -71,7 +71,7 @@ pub(super) fn questions(subsystem: &Subsystem) -> Questions<'_> {
 ///
 /// # Errors
 /// If a subsystem cannot be built or assembled.
-pub(super) fn prepare(description: &Description, choices: Choices) -> Result<(Reduction, Vec<Prepared>), RunError> {
+pub fn prepare(description: &Description, choices: Choices) -> Result<(Reduction, Vec<Prepared>), RunError> {
     let mut reduction = Reduction::of(description, choices);
     let subsystems = std::mem::take(&mut reduction.subsystems).into_iter();
     let prepared = subsystems.map(|subsystem| as_far_as_joints_go(description, subsystem));

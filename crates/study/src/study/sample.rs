@@ -187,6 +187,11 @@ impl Trajectories<'_> {
         Ok(Some(Sampled { closed: closed.into_iter().filter(|closed| *closed).count(), stopped }))
     }
 
+    /// Whether the motion has switches.
+    pub fn has_switches(&self) -> bool {
+        self.studies.iter().any(|study| study.simulator.switches().is_some())
+    }
+
     /// Also reduces all samples that are simulated from now on.
     ///
     /// # Errors

@@ -25,7 +25,7 @@ use crate::simulate::SimulationError;
 ///
 /// # Errors
 /// As for any run.
-pub(super) fn run(
+pub fn run(
     description: &Description,
     options: &Options,
     keep: Keep,

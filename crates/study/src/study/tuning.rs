@@ -47,13 +47,7 @@ pub fn tuning() -> Vec<Constant> {
         crate::study::reduced::tuning::Tuning::constants(),
         crate::study::statistics::tuning::Tuning::constants(),
         crate::study::gradient::tuning::Tuning::constants(),
-        crate::study::fit::tuning::Tuning::constants(),
-        crate::study::allocate::tuning::Tuning::constants(),
-        crate::study::design::tuning::Tuning::constants(),
-        crate::study::cost::tuning::Tuning::constants(),
-        crate::study::verify::tuning::Tuning::constants(),
         crate::study::black_box::tuning::Tuning::constants(),
-        crate::study::explain::tuning::Tuning::constants(),
         crate::study::drawing::tuning::Tuning::constants(),
         crate::study::motion::tuning::Tuning::constants(),
     ]

@@ -21,7 +21,7 @@ use crate::simulate::SimulationError;
 ///
 /// # Errors
 /// If there is no mechanism.
-pub(super) fn needs_mechanism(description: &Description, question: &str) -> Result<(), Refusal> {
+pub fn needs_mechanism(description: &Description, question: &str) -> Result<(), Refusal> {
     match description.analysis {
         Analysis::Dimensions => {
             Err(Refusal(format!("{question} needs a mechanism, and here are formulas of dimensions alone")))

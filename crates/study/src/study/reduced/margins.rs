@@ -4,12 +4,16 @@ use std::borrow::Cow;
 
 use super::kept::KeptReduced;
 
-/// Stored surrogates of a subsystem, and the numbers of its parameters, reduced outputs and requirements in the model.
+/// Stored surrogates of a subsystem, with indices from its numbers to the model's.
 #[derive(Clone)]
 pub struct MarginsOfPart<'k> {
+    /// Surrogates of the subsystem.
     pub kept: Cow<'k, KeptReduced>,
+    /// Numbers of its parameters in the model.
     pub parameters: &'k [usize],
+    /// Numbers of its reduced outputs in the model.
     pub reduced: &'k [usize],
+    /// Numbers of its requirements in the model.
     pub requirements: Cow<'k, [usize]>,
 }
 

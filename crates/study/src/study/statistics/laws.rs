@@ -10,17 +10,21 @@ use symdiff::math;
 
 /// Laws and correlations of the uncertain parameters in the model's order.
 pub struct Laws {
+    /// Names of the parameters.
     pub names: Vec<String>,
     laws: Vec<Law>,
     /// Their values.
     quantiles: Vec<Quantiles>,
-    /// The box that is bounded.
+    /// Lower ends of the box that is bounded, SI.
     pub lower: Vec<f64>,
+    /// Its upper ends, SI.
     pub upper: Vec<f64>,
+    /// Nominal values, SI.
     pub nominal: Vec<f64>,
     /// The box that samples are drawn from.
     least: Vec<f64>,
     most: Vec<f64>,
+    /// Correlations.
     pub copula: Copula,
     /// Joint laws of parameters in zones.
     zones: Vec<LawInZone>,

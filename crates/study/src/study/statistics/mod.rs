@@ -12,7 +12,7 @@ mod realisations;
 mod requirements;
 mod rows;
 mod stack;
-pub(crate) mod tuning;
+pub mod tuning;
 mod zones;
 
 use super::answers::Kept;
@@ -24,7 +24,7 @@ use crate::numerics::BandError;
 use crate::results::{
     Bounds, LawSummary, OutputStatistics, OutputStatisticsSummary, StatisticsResult, StatisticsSummary, Summary,
 };
-pub(super) use laws::Laws;
+pub use laws::Laws;
 use rows::Rows;
 
 /// Why there are none.
@@ -34,7 +34,7 @@ const INTERRUPTED: &str = "interrupted before statistics were done";
 ///
 /// # Errors
 /// As for any run. Where statistics alone fail, the summary says why.
-pub(super) fn run(description: &Description, shown: usize, options: &Options) -> Result<(Bounds, Summary), RunError> {
+pub fn run(description: &Description, shown: usize, options: &Options) -> Result<(Bounds, Summary), RunError> {
     // Without a stored surrogate, linear sums use the derivatives.
     let derivatives = options.derivatives || shown > 0;
     let asked = Options { methods: options.methods.clone(), derivatives, ..*options };
@@ -179,14 +179,14 @@ fn side_by_side(
 ///
 /// # Errors
 /// If nothing is uncertain.
-pub(super) fn laws(description: &Description) -> Result<Laws, String> {
+pub fn laws(description: &Description) -> Result<Laws, String> {
     let mut laws = Laws::of(description)?;
     laws.widen();
     Ok(laws)
 }
 
 /// Largest deviation by the law of a parameter, in multiples of its tolerance.
-pub(super) fn reach(description: &Description, name: &str) -> f64 {
+pub fn reach(description: &Description, name: &str) -> f64 {
     let Some((_, [nominal, lower, upper])) = intervals(description).find(|(known, _)| *known == name) else {
         return 1.0;
     };

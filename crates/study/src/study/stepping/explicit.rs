@@ -175,7 +175,7 @@ fn explicit_work(simulator: &Simulator, schedule: &Schedule) -> usize {
 
 /// The integrator of a subsystem under a tolerance, with the reason; `None` without a tolerance, or if the model
 /// chooses it.
-pub fn decision(description: &Description, simulator: &Simulator) -> Option<Decision> {
+pub fn integration_decision(description: &Description, simulator: &Simulator) -> Option<Decision> {
     let simulation = &description.simulation;
     let of_bounds = description.bounds.tolerance;
     let tolerance = match simulation.stepping {

@@ -6,10 +6,10 @@ use super::axes::Axes;
 use super::goal::Goal;
 use super::tuning::TUNING;
 use super::{DesignError, Question};
+use crate::applications::allocate::run_simulations;
+use crate::applications::allocate::tuning::TUNING as ALLOCATE;
 use crate::methods::{Keep, Method};
 use crate::model::Requirement;
-use crate::study::allocate::run_simulations;
-use crate::study::allocate::tuning::TUNING as ALLOCATE;
 use crate::study::{Kept, Options, RunError, subsystems};
 
 /// A surrogate of all margins over a region of nominal values and the tolerances about them.

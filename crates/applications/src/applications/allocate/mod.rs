@@ -13,21 +13,21 @@ pub(crate) mod tuning;
 mod wide;
 mod worst;
 
-use super::{Options, RunError, pool, reduced, statistics};
 use crate::methods::Keep;
 use crate::model::Description;
 use crate::numerics::statistics::normal_quantile;
 use crate::results::{AllocatedTolerance, Allocation, Criterion, NotMet, Summary, ToleranceZone, TradePoint, Verdict};
 use crate::simulate::SimulationError;
+use crate::study::{Options, RunError, pool, reduced, statistics};
 use crate::syntax::{Code, Coded};
 use choose::{Chosen, choose};
 use items::with_tolerances;
-pub(in crate::study) use items::{Choice, Item, items};
+pub(in crate::applications) use items::{Choice, Item, items};
 use share::Share;
 use surface::Surface;
 use tuning::TUNING;
 use wide::{Wide, largest_error, of, surrogate};
-pub(in crate::study) use wide::{raise, run_simulations};
+pub(in crate::applications) use wide::{raise, run_simulations};
 use worst::{Slack, Worst};
 
 /// Options of an allocation.

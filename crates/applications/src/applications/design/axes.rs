@@ -2,12 +2,12 @@
 
 use super::tuning::TUNING;
 use super::width::Width;
+use crate::applications::allocate::items;
 use crate::grammar::display_unit::DisplayUnit;
 use crate::methods::Chebyshev;
 use crate::model::{Description, Free, Law, ParameterValue};
 use crate::numerics::statistics::Distribution;
 use crate::results::AllocatedTolerance;
-use crate::study::allocate::items;
 use crate::study::statistics;
 use symdiff::Formula;
 

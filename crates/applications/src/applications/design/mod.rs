@@ -25,9 +25,9 @@ mod worst;
 
 use std::ops::Range;
 
-use super::{Options, RunError, pool, reduced, statistics};
 use crate::model::{Description, Objective};
 use crate::results::{Criterion, DesignKind, DesignObjective, DesignParameter, DesignPoint, DesignStudy};
+use crate::study::{Options, RunError, pool, reduced, statistics};
 use crate::syntax::{Code, Coded};
 use allocated::at_cost;
 use axes::{Axes, without_tolerances};

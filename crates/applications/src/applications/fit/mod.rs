@@ -24,10 +24,10 @@ use readings::{Finer, SurrogateRun};
 use set::Set;
 use unexplained::unexplained;
 
-use super::{ChosenSamples, Options, RunError, pool, sample, uncertain};
 use crate::model::Description;
 use crate::numerics::{ParameterBox, Sample};
 use crate::results::{Fit, FitOutput, FitParameter, FitRow};
+use crate::study::{ChosenSamples, Options, RunError, pool, sample, uncertain};
 use crate::syntax::{Code, Coded};
 use tuning::TUNING;
 
@@ -232,7 +232,7 @@ fn simulated(
         })?;
         done.ok_or(FitError::Interrupted)?;
         let (times, width) = (&trajectories.times, trajectories.outputs.len());
-        let switches = trajectories.studies.iter().any(|study| study.simulator.switches().is_some());
+        let has_switches = trajectories.has_switches();
         let of = |row: &data::Measured| {
             let Some(found) = Interpolation::new(times, row.time) else { return f64::NAN };
             let sum = |weights: &[(usize, f64)]| -> f64 {
@@ -240,7 +240,7 @@ fn simulated(
             };
             let value = sum(&found.fine);
             let is_beside_impact = |side: &Vec<(usize, f64)>| (sum(side) - value).abs() > row.noise;
-            let is_unknown = switches && found.sides(times, row.time).iter().any(is_beside_impact);
+            let is_unknown = has_switches && found.sides(times, row.time).iter().any(is_beside_impact);
             if is_unknown { f64::NAN } else { value }
         };
         Ok(measurements.values.iter().map(of).collect())

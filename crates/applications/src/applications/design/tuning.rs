@@ -1,10 +1,10 @@
-//! Constants of the room `study: design`.
+//! Constants of the room `applications: design`.
 
 use symdiff::constants::tuning;
 
 tuning! {
     /// Nominal values that a study chooses.
-    "study: design" {
+    "applications: design" {
         /// Digits of a nominal value that was found, of the range's width.
         digits: i32 = 4, moves "nominal values that are found";
         /// Parameters of which both neighbours are tried.

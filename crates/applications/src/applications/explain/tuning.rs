@@ -1,10 +1,10 @@
-//! Constants of the room `study: explain`.
+//! Constants of the room `applications: explain`.
 
 use symdiff::constants::tuning;
 
 tuning! {
     /// Lists of the parts of a compiled model.
-    "study: explain" {
+    "applications: explain" {
         /// Instructions a step up to which a model is compiled again to count the saving.
         counted: usize = 30_000, moves "the list of decisions of `explain`";
         /// Most names that a decision lists.

@@ -5,12 +5,12 @@ use super::goal::{Goal, Merit};
 use super::surface::{self, DesignSurface, about, scale};
 use super::tuning::TUNING;
 use super::{DesignError, Question};
+use crate::applications::allocate::run_simulations;
 use crate::methods::Keep;
 use crate::model::{Description, Requirement};
 use crate::results::{
     Allocation, Bounds, DesignKind, DesignPoint, NotMet, RequirementSummary, Summary, Verdict, foremost,
 };
-use crate::study::allocate::run_simulations;
 use crate::study::{Kept, Options, RunError, reduced, statistics, subsystems};
 
 /// A point with the study of its worst cases.

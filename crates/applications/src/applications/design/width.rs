@@ -1,6 +1,6 @@
 //! Tolerances that are chosen, and their costs.
 
-use crate::study::allocate::{Choice, Item};
+use crate::applications::allocate::{Choice, Item};
 
 /// A tolerance that is chosen.
 #[derive(Clone, Debug)]

@@ -12,12 +12,13 @@ mod reference;
 mod timing;
 pub(crate) mod tuning;
 
-use super::RunError;
 use crate::compile::compile_switches;
 use crate::methods::{MOST_SIMULATIONS, Varied, can_compose};
 use crate::model::{Description, Stepping};
 use crate::numerics::clock::Instant;
 use crate::results::{CostMethod, CostPoint, CostReference, CostStudy, cost_curves, pareto};
+use crate::study::black_box::needs_mechanism;
+use crate::study::{RunError, prepare, scheme};
 use crate::syntax::{Code, Coded};
 
 use grid::{Setting, settings, smoothest, uncertain};
@@ -71,9 +72,9 @@ pub enum CostError {
 /// # Errors
 /// If the model cannot be run at all, or the reference cannot be computed.
 pub fn cost(model: &Description, options: &CostOptions) -> Result<CostStudy, CostError> {
-    super::black_box::needs_mechanism(model, "a study of methods and integrators").map_err(RunError::from)?;
+    needs_mechanism(model, "a study of methods and integrators").map_err(RunError::from)?;
     let begun = Instant::now();
-    let system = super::prepare(model)?.system;
+    let system = prepare(model)?.system;
     let k = uncertain(model);
     let composable = can_compose(k, system.q.len());
     let is_over = |budget: f64| move || (options.interrupted)() || begun.elapsed().as_secs_f64() > budget;
@@ -166,7 +167,7 @@ fn without_reference(model: &Description, composable: bool, options: &CostOption
         reference_seconds: seconds,
         seconds: options.budget,
         reference: CostReference {
-            method: if k > 0 { smoothest(composable) } else { CostMethod::Scheme(super::scheme(model)) },
+            method: if k > 0 { smoothest(composable) } else { CostMethod::Scheme(scheme(model)) },
             order: 0,
             steps: [model.simulation.stepping; 3],
             bounds_error: f64::INFINITY,

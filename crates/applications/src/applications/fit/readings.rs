@@ -4,11 +4,11 @@ use std::collections::BTreeMap;
 
 use super::data::Measured;
 use super::{FitError, Measurements};
+use crate::applications::allocate::{raise, run_simulations};
 use crate::methods::Method;
 use crate::model::{Description, Stepping};
 use crate::numerics::Interpolation;
 use crate::numerics::ParameterBox;
-use crate::study::allocate::{raise, run_simulations};
 use crate::study::{Evaluator, Kept, Options, run_keeping};
 
 /// Surrogates over a box of the parameters.

@@ -8,9 +8,10 @@ use super::search;
 use super::surface::{DesignSurface, scale};
 use super::tuning::TUNING;
 use super::{DesignError, Question};
+use crate::applications::{AllocateError, AllocateOptions, allocate};
 use crate::model::Description;
 use crate::results::{Allocation, DesignKind};
-use crate::study::{AllocateError, AllocateOptions, Options, allocate};
+use crate::study::Options;
 
 /// Has the requirements leave this margin, as a share of their limits.
 fn require_margin(model: &mut Description, margin: f64) {

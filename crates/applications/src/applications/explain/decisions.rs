@@ -1,8 +1,8 @@
 //! Omitted or less frequent computations: the saving of each decision is counted by compiling without it.
 
 use crate::study::formulation::{as_chosen, compiled, instructions};
+use crate::study::integration_decision;
 use crate::study::prepared::{Prepared, prepare, questions};
-use crate::study::stepping::decision;
 use symdiff::{Formula, Input, lower};
 
 use super::tuning::TUNING;
@@ -46,7 +46,7 @@ pub fn decisions(description: &Description, reduction: &Reduction, prepared: &[P
     }
     found.extend(subsystems(description, prepared));
     found.extend(constants(prepared));
-    found.extend(prepared.iter().filter_map(|one| decision(&one.subsystem.description, &one.simulator)));
+    found.extend(prepared.iter().filter_map(|one| integration_decision(&one.subsystem.description, &one.simulator)));
     if affordable {
         found.extend(numbers(prepared, step));
         found.extend(unasked(prepared));

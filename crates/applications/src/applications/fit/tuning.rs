@@ -1,10 +1,10 @@
-//! Constants of the room `study: fit`.
+//! Constants of the room `applications: fit`.
 
 use symdiff::constants::tuning;
 
 tuning! {
     /// Parameters that agree with measured values.
-    "study: fit" {
+    "applications: fit" {
         /// Most rows that are simulated so that one is at each measured time: between rows a motion is interpolated,
         /// which no polynomial does across an impact.
         most_rows: f64 = 5000.0, moves "parameters that are estimated";

@@ -1,10 +1,10 @@
-//! Constants of the room `study: cost`.
+//! Constants of the room `applications: cost`.
 
 use symdiff::constants::tuning;
 
 tuning! {
     /// The work-precision study of a model.
-    "study: cost" {
+    "applications: cost" {
         /// An output that moves (or whose band gets wider) by no more than this share of its size has no scale to
         /// measure by.
         at_rest: f64 = 1e-9, moves "which outputs count in cost studies";

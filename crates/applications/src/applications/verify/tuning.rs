@@ -1,10 +1,10 @@
-//! Constants of the room `study: verify`.
+//! Constants of the room `applications: verify`.
 
 use symdiff::constants::tuning;
 
 tuning! {
     /// Verification by manufactured motions.
-    "study: verify" {
+    "applications: verify" {
         /// Instants at which powers are taken.
         instants_of_power: usize = 64, moves "balances of power";
         /// Instants at which derivatives are checked, as shares of the motion.

@@ -4,9 +4,6 @@ mod decisions;
 mod effect_costs;
 pub(crate) mod tuning;
 
-use super::black_box::needs_mechanism;
-use super::prepared::{Prepared, prepare, questions};
-use super::{RunError, reduced};
 use crate::compile::{Program, Tapes};
 use crate::model::Description;
 use crate::reduce::Choices;
@@ -14,6 +11,9 @@ use crate::results::{
     EffectExplanation, Explanation, InstructionCounts, LeftOut, NewtonMatrix, explanation_of_subsystems,
 };
 use crate::simulate::Simulator;
+use crate::study::black_box::needs_mechanism;
+use crate::study::prepared::{Prepared, prepare, questions};
+use crate::study::{RunError, reduced};
 
 use decisions::{decisions, uncertain};
 use effect_costs::effect_costs;

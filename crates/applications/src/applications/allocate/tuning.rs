@@ -1,10 +1,10 @@
-//! Constants of the room `study: allocate`.
+//! Constants of the room `applications: allocate`.
 
 use symdiff::constants::tuning;
 
 tuning! {
     /// Tolerances that a study chooses.
-    "study: allocate" {
+    "applications: allocate" {
         /// Rounds of linearisation: of worst cases, and of samples, which give less information.
         rounds_of_choice: [usize; 2] = [40, 12], moves "tolerances that are found";
         /// Factor by which a multiple may change in the first round; later rounds allow less.

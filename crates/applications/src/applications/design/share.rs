@@ -4,9 +4,9 @@ use super::goal::Goal;
 use super::surface::DesignSurface;
 use super::tuning::TUNING;
 use super::worst::{Assessed, around, quotients};
+use crate::applications::allocate::tuning::TUNING as ALLOCATE;
 use crate::numerics::Linear;
 use crate::numerics::statistics::{Mixture, weighted_quantile};
-use crate::study::allocate::tuning::TUNING as ALLOCATE;
 use crate::study::statistics::Laws;
 
 /// Slacks in a share of the samples of the parameters' laws, which move with the nominal values.

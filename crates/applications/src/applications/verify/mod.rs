@@ -18,9 +18,6 @@ mod windows;
 
 use rayon::prelude::*;
 
-use super::black_box::needs_mechanism;
-use super::formulation::compiled;
-use super::{Options, RunError, first_step, pool, scheme};
 use crate::assemble::{BuildError, Questions};
 use crate::compile::compile_equations;
 use crate::model::{Analysis, Description, Formulation, Stepping};
@@ -29,6 +26,9 @@ use crate::results::{FormulationVerification, SchemeVerification, Verification};
 use crate::simulate::{
     Integration, Observed, Schedule, SimulationError, Simulator, Steps, choose_independent, integrator,
 };
+use crate::study::black_box::needs_mechanism;
+use crate::study::formulation::compiled;
+use crate::study::{Options, RunError, first_step, pool, scheme};
 use crate::syntax::{Code, Coded};
 
 use balance::balance;
