@@ -98,15 +98,15 @@ fn study_of(desk: &Desk, reading: &Reading, opened: Opened) {
         "duration": description.simulation.duration,
     });
     let starts_a_program = description.black_box.is_some() && !reading.is_allowed;
-    desk.board.put("model", model);
     if starts_a_program {
+        desk.board.put("model", model);
         let why = "The model asks a program, which is started when you allow it.";
         desk.board.put("mechanism", json!({ "number": reading.change, "absent": why }));
         desk.board.put("progress", Value::Null);
         let note = json!({ "number": reading.change, "stage": "asked", "error": why, "waits": true });
         return desk.board.put("bounds", note);
     }
-    let current = desk.publish(reading.change, description.clone());
+    let current = desk.publish(reading.change, description.clone(), model);
     let done = study::caught("the bounds", || stages(desk, &current, reading));
     if let Err(error) = done {
         desk.board.put("bounds", json!({ "number": current.number, "stage": "asked", "error": error.to_string() }));

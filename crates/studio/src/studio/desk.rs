@@ -5,6 +5,8 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
+use serde_json::Value;
+
 use super::board::Board;
 use super::questions::{Move, Values};
 use super::requests::Requests;
@@ -199,11 +201,15 @@ impl Desk {
         self.has_ended() || self.change.load(Ordering::Relaxed) != change
     }
 
-    /// Makes a model the current one.
-    pub fn publish(&self, number: u64, description: Description) -> Arc<Current> {
+    /// Makes a model the current one, and puts its note on the board: under the lock, so that a page or a worker that
+    /// learns of it finds it to be the current one.
+    pub fn publish(&self, number: u64, description: Description, note: Value) -> Arc<Current> {
         let current = Arc::new(Current { number, description });
-        self.lock().current = Some(Arc::clone(&current));
+        let mut state = self.lock();
         self.number.store(number, Ordering::Relaxed);
+        state.current = Some(Arc::clone(&current));
+        self.board.put("model", note);
+        drop(state);
         self.bell.notify_all();
         current
     }
@@ -251,5 +257,52 @@ impl Desk {
     /// Whether the session has ended.
     pub fn has_ended(&self) -> bool {
         self.is_ended.load(Ordering::Relaxed)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::thread::{scope, yield_now};
+
+    use serde_json::json;
+
+    use super::*;
+    use crate::model::load_str;
+
+    /// A page and a worker that learn of a model find it to be the current one, whenever they are scheduled.
+    #[test]
+    fn known_model_is_the_current_one() {
+        const MODELS: u64 = 20_000;
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("m.yaml");
+        std::fs::write(&path, "").unwrap();
+        let desk = Desk::new(Texts::new(path).unwrap(), None, folder.path().to_owned());
+        let text = "bodies: { b: { mass: 1, coordinates: [x] } }\noutputs: { x: b.x }\n\
+                    simulation: { duration: 1, step: 0.1 }\n";
+        let description = load_str("m.yaml", text, &[]).unwrap_or_else(|errors| panic!("{errors}"));
+        scope(|scope| {
+            scope.spawn(|| {
+                (1..=MODELS).for_each(|number| {
+                    desk.publish(number, description.clone(), json!(number));
+                });
+            });
+            scope.spawn(|| {
+                let mut seen = 0;
+                while seen < MODELS {
+                    let Some(current) = desk.next_model(seen) else { panic!("the desk has not ended") };
+                    seen = current.number;
+                    if desk.is_replaced(seen) {
+                        assert!(desk.current().is_some_and(|own| own.number > seen), "{seen} is replaced by nothing");
+                    }
+                }
+            });
+            let mut noted = 0;
+            while noted < MODELS {
+                let board = desk.board.after(0);
+                noted = board["topics"]["model"].as_u64().unwrap_or(0);
+                assert!(noted == 0 || desk.current().is_some_and(|own| own.number >= noted), "{noted} is not current");
+                yield_now();
+            }
+        });
     }
 }
