@@ -1,5 +1,5 @@
-//! A study asks a model's questions of its simulations: bounds, reduced outputs, requirements, statistics, sweeps and
-//! allocation. `results` holds the answers, `store` keeps simulations on disk, `black_box` asks programs.
+//! A study asks a model's questions of its simulations: bounds, reduced outputs, requirements, statistics and
+//! gradients. `results` holds the answers, `store` keeps simulations on disk, `black_box` asks programs.
 
 #![forbid(unsafe_code)]
 #![cfg_attr(test, allow(clippy::disallowed_methods, reason = "tests compare with the standard library's functions"))]
