@@ -272,7 +272,7 @@ mod tests {
     /// A page and a worker that learn of a model find it to be the current one, whenever they are scheduled.
     #[test]
     fn known_model_is_the_current_one() {
-        const MODELS: u64 = 20_000;
+        let models = 20_000;
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("m.yaml");
         std::fs::write(&path, "").unwrap();
@@ -282,13 +282,13 @@ mod tests {
         let description = load_str("m.yaml", text, &[]).unwrap_or_else(|errors| panic!("{errors}"));
         scope(|scope| {
             scope.spawn(|| {
-                (1..=MODELS).for_each(|number| {
+                (1..=models).for_each(|number| {
                     desk.publish(number, description.clone(), json!(number));
                 });
             });
             scope.spawn(|| {
                 let mut seen = 0;
-                while seen < MODELS {
+                while seen < models {
                     let Some(current) = desk.next_model(seen) else { panic!("the desk has not ended") };
                     seen = current.number;
                     if desk.is_replaced(seen) {
@@ -297,7 +297,7 @@ mod tests {
                 }
             });
             let mut noted = 0;
-            while noted < MODELS {
+            while noted < models {
                 let board = desk.board.after(0);
                 noted = board["topics"]["model"].as_u64().unwrap_or(0);
                 assert!(noted == 0 || desk.current().is_some_and(|own| own.number >= noted), "{noted} is not current");
