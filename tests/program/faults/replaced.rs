@@ -5,9 +5,10 @@
 
 use std::collections::BTreeMap;
 use std::fs;
+use std::os::unix::process::ExitStatusExt;
 use std::path::Path;
 use std::process::{Command, Stdio};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use crate::place::Place;
 
@@ -37,73 +38,120 @@ fn seen(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     files.filter(|(name, _)| !name.starts_with('.')).collect()
 }
 
-/// Kills runs of two variants in turn while they write over each other's results, each a little later after it began to
-/// write. How many folders were whole, and how many had less than that.
-fn killed(times: u32) -> (u32, u32) {
-    let place = Place::new();
-    pushed(&place, 120);
-    let commands = ["run -q --no-report pushed.yaml", "run -q --no-report pushed.yaml --set m=3±1%"];
-    let whole = ["a", "b"].map(|name| place.path().join(name));
-    for (command, folder) in commands.iter().zip(["a", "b"]) {
-        place.run(&format!("{command} -o {folder}"), 0);
-    }
-    let whole = whole.map(|folder| seen(&folder));
-    assert!(whole[0].keys().eq(whole[1].keys()) && whole[0]["bounds.csv"] != whole[1]["bounds.csv"]);
-    let out = place.path().join("out");
-    place.run(&format!("{} -o out", commands[0]), 0);
-    let is_written = || {
-        let mut names = fs::read_dir(&out).unwrap().flatten().map(|entry| entry.file_name());
-        names.any(|own| own.to_str().is_some_and(|own| own.starts_with(".mbint-") && own.ends_with(".tmp")))
-    };
-    let is_replaced = || out.join(".mbint-replacing").exists();
-    let (mut complete, mut partial) = (0, 0);
-    for kill in 0..times {
-        let mut command = place.command(commands[(kill as usize + 1) % 2]);
-        let mut run = command.args(["-o", "out"]).stderr(Stdio::null()).spawn().unwrap();
-        // Two of three kills are aimed at the replacement itself, the others at the files that are written before.
-        let (has_begun, wait): (&dyn Fn() -> bool, u32) =
-            if kill % 3 == 0 { (&is_written, kill * 50) } else { (&is_replaced, kill * 37 % 100 * 40) };
-        while run.try_wait().unwrap().is_none() && !has_begun() {}
-        let begun = Instant::now();
-        while begun.elapsed() < Duration::from_micros(wait.into()) {}
-        run.kill().unwrap();
-        run.wait().unwrap();
-        let found = seen(&out);
-        let of = |whole: &BTreeMap<String, Vec<u8>>| found.iter().all(|(name, text)| whole.get(name) == Some(text));
-        assert!(of(&whole[0]) || of(&whole[1]), "{kill}: {:?}", found.keys());
-        let is_whole = whole.contains(&found);
-        assert!(is_whole || !found.contains_key("summary.json"), "{kill}: {:?}", found.keys());
-        if is_whole {
-            complete += 1
-        } else {
-            partial += 1
-        }
-        if !is_whole && kill % 4 == 0 {
-            // Readers of the results find them whole.
-            place.run("report out", 0);
-            fs::remove_file(out.join("report.html")).unwrap();
-            let found = seen(&out);
-            assert!(whole.contains(&found), "{kill}: {:?}", found.keys());
-        }
-    }
-    place.run(&format!("{} -o out", commands[0]), 0);
-    assert_eq!(seen(&out), whole[0]);
-    assert!(fs::read_dir(&out).unwrap().flatten().all(|entry| entry.path().is_file()), "nothing is left over");
-    (complete, partial)
+/// Two runs that write over each other's results, and the results of each.
+struct Variants {
+    place: Place,
+    commands: [&'static str; 2],
+    whole: [BTreeMap<String, Vec<u8>>; 2],
 }
 
+impl Variants {
+    /// The folder `out` has the results of the first.
+    fn new(outputs: usize) -> Self {
+        let place = Place::new();
+        pushed(&place, outputs);
+        let commands = ["run -q --no-report pushed.yaml", "run -q --no-report pushed.yaml --set m=3±1%"];
+        let whole = ["a", "b"].map(|name| place.path().join(name));
+        for (command, folder) in commands.iter().zip(["a", "b"]) {
+            place.run(&format!("{command} -o {folder}"), 0);
+        }
+        let whole = whole.map(|folder| seen(&folder));
+        assert!(whole[0].keys().eq(whole[1].keys()) && whole[0]["bounds.csv"] != whole[1]["bounds.csv"]);
+        place.run(&format!("{} -o out", commands[0]), 0);
+        Self { place, commands, whole }
+    }
+
+    /// The command that writes the results of a variant into `out`.
+    fn command(&self, variant: usize) -> Command {
+        let mut command = self.place.command(self.commands[variant]);
+        command.args(["-o", "out"]).stderr(Stdio::null());
+        command
+    }
+
+    /// The variant whose results are in the folder, if they are whole.
+    ///
+    /// # Panics
+    /// If files of both are there, or a summary without all others.
+    fn check(&self, kill: usize) -> Option<usize> {
+        let found = seen(&self.place.path().join("out"));
+        let of = |whole: &BTreeMap<String, Vec<u8>>| found.iter().all(|(name, text)| whole.get(name) == Some(text));
+        assert!(self.whole.iter().any(of), "{kill}: {:?}", found.keys());
+        let variant = self.whole.iter().position(|whole| *whole == found);
+        assert!(variant.is_some() || !found.contains_key("summary.json"), "{kill}: {:?}", found.keys());
+        variant
+    }
+
+    /// Readers of the results find them whole.
+    fn read(&self) {
+        self.place.run("report out", 0);
+        fs::remove_file(self.place.path().join("out/report.html")).unwrap();
+    }
+
+    /// A run that is not killed leaves nothing but its results.
+    fn finish(&self, variant: usize) {
+        self.place.run(&format!("{} -o out", self.commands[variant]), 0);
+        let out = self.place.path().join("out");
+        assert!(seen(&out) == self.whole[variant]);
+        assert!(fs::read_dir(&out).unwrap().flatten().all(|entry| entry.path().is_file()), "nothing is left over");
+    }
+}
+
+/// Kills at times of the clock, each a little later after the run began to write.
 #[test]
 #[ignore = "2 s"]
 fn a_killed_run_leaves_no_mixture() {
-    let (complete, partial) = killed(12);
-    assert_eq!(complete + partial, 12);
+    let variants = Variants::new(120);
+    let out = variants.place.path().join("out");
+    let is_written = || {
+        let mut names = fs::read_dir(&out).unwrap().flatten().map(|entry| entry.file_name());
+        names.any(|own| own.to_str().is_some_and(|own| own.starts_with(".mbint-")))
+    };
+    for kill in 0..24 {
+        let mut run = variants.command((kill + 1) % 2).spawn().unwrap();
+        while run.try_wait().unwrap().is_none() && !is_written() {}
+        std::thread::sleep(Duration::from_micros(kill as u64 * 200));
+        run.kill().unwrap();
+        run.wait().unwrap();
+        variants.check(kill);
+    }
+    variants.finish(0);
 }
 
+/// A kill before each change of the file system that a run makes: independent of the speed of disk and processor.
 #[test]
-#[ignore = "300 runs"]
-fn three_hundred_killed_runs_leave_no_mixture() {
-    let (complete, partial) = killed(300);
-    assert!(complete > 0 && partial > 0, "{complete}, {partial}: some while files changed their names, some not");
+#[ignore = "100 runs"]
+#[cfg(all(target_os = "linux", target_env = "gnu"))]
+fn a_run_killed_at_any_change_of_its_folder_leaves_no_mixture() {
+    let variants = Variants::new(12);
+    let library = variants.place.path().join("killed.so");
+    let source = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/program/faults/killed.c");
+    let compiled = Command::new("gcc").args(["-shared", "-fPIC", "-O1", "-o"]).arg(&library).arg(source).status();
+    assert!(compiled.unwrap().success());
+    // Folders with the older results, with parts of either, and with the newer ones.
+    let (mut older, mut partial, mut newer) = (0, 0, 0);
+    for kill in 1.. {
+        variants.finish(0);
+        let mut command = variants.command(1);
+        let ended = command.env("LD_PRELOAD", &library).env("KILLED_AT", kill.to_string()).status().unwrap();
+        let found = variants.check(kill);
+        if ended.success() {
+            assert_eq!(found, Some(1));
+            break;
+        }
+        assert_eq!(ended.signal(), Some(9), "{kill}");
+        match found {
+            Some(0) => older += 1,
+            Some(_) => newer += 1,
+            None => partial += 1,
+        }
+        if found.is_none() && kill % 4 == 0 {
+            variants.read();
+            assert_eq!(variants.check(kill), Some(1), "{kill}");
+        }
+    }
+    // All files of 12 outputs are set aside and replaced, and their journal is removed file by file.
+    let files = variants.whole[0].len();
+    assert!(older > files && partial >= 2 * files - 2 && newer > files, "{files} files: {older}, {partial}, {newer}");
 }
 
 #[test]
