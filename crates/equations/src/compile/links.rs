@@ -101,6 +101,7 @@ impl Linked {
         let roots: Vec<Expr> = rows.iter().copied().chain(operands).collect();
         let mut images = graph.substitute(&roots, &symbol_of).into_iter();
         let rows = images.by_ref().take(rows.len()).collect();
+        // `substitute` returns an image of each root.
         let mut operand = || images.next().expect("an image of each operand");
         let mut values = Vec::with_capacity(found.len());
         for (&(value, link), symbol) in found.iter().zip(symbols) {
@@ -184,6 +185,7 @@ impl MassOfLinks {
         let values: Vec<Expr> = matrix.entries().map(|(_, _, value)| value).collect();
         let mut values = graph.substitute(&values, &linked.symbols().collect()).into_iter();
         for entry in matrix.rows.iter_mut().flatten() {
+            // `substitute` returns an image of each of the entries, in this order.
             entry.1 = values.next().expect("one value an entry");
         }
         Self { matrix, first: linked.order(system, size) }

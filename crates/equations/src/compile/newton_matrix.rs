@@ -179,6 +179,7 @@ pub fn newton_system(
     let values: Vec<Expr> = matrix.entries().map(|(_, _, value)| value).collect();
     let mut values = graph.substitute(&values, &at_end).into_iter();
     for entry in matrix.rows.iter_mut().flatten() {
+        // `substitute` returns an image of each of the entries, in this order.
         entry.1 = values.next().expect("one value an entry");
     }
     let active_condition = system.active_condition.map(|condition| graph.substitute(&[condition], &at_end)[0]);

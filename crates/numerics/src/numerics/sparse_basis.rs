@@ -101,6 +101,7 @@ impl SparseBasis {
 
         let factor = |t: usize| {
             let mut earlier = term(t).to_vec();
+            // Terms from the second on have a positive degree.
             let axis = earlier.iter().rposition(|&j| j > 0).expect("only the first term is constant");
             let polynomial = first_polynomials[axis] + u32::from(std::mem::take(&mut earlier[axis]));
             Factor { earlier: places[earlier.as_slice()], polynomial }

@@ -94,6 +94,7 @@ pub struct Piece<'b> {
 /// Without any piece.
 #[must_use]
 pub fn bounds_of_pieces(pieces: &[Piece]) -> Bounds {
+    // Callers merge at least one piece.
     let longest = pieces.iter().max_by_key(|piece| piece.rows).expect("some piece has been bounded");
     let rows = longest.rows;
     let reach = |row: usize| pieces.iter().filter(move |piece| row < piece.rows);

@@ -356,6 +356,7 @@ impl Formula {
             };
             built.push(expr);
         }
+        // Each of the terms was pushed.
         Ok(builder.scalar(*built.last().expect("parse and number make at least one term")))
     }
 }

@@ -98,6 +98,7 @@ impl Registers<'_> {
 
     /// The register of a value.
     fn of(&self, expr: Expr) -> u32 {
+        // The order of the computation has each operand before its use.
         self.find(expr).expect("an operand is a symbol, a constant, stored, or computed before")
     }
 

@@ -203,7 +203,8 @@ impl Tape {
                 }
                 Item::Leave => {
                     let end = tape.pieces.len();
-                    let start = open.pop().expect("what ends has begun");
+                    // Each `Leave` follows its `Enter`.
+                    let start = open.pop().expect("each piece has a beginning");
                     if let Piece::Region(region) = &mut tape.pieces[start] {
                         region.end = end;
                     }

@@ -75,9 +75,11 @@ impl Remainder {
         entries.keys().for_each(|&column| {
             self.columns[column].remove(&row);
         });
+        // The column was chosen among the entries of this row.
         let pivot = entries.remove(&column).expect("the pivot is one of the row's entries");
         for other in std::mem::take(&mut self.columns[column]) {
             self.sparsest.remove(&(self.rows[other].len(), other));
+            // `columns` and `rows` gain and lose each entry together.
             let ratio = self.rows[other].remove(&column).expect("columns list the rows with an entry there") / pivot;
             for (&index, value) in &entries {
                 *self.rows[other].entry(index).or_insert(0.0) -= ratio * value;

@@ -64,6 +64,7 @@ impl Active {
         self.sparsest_rows.remove(&self.row_key(row));
         self.sparsest_columns.remove(&self.column_key(column));
         let mut upper = std::mem::take(&mut self.rows[row]);
+        // Callers choose the pivot among the entries of this row.
         let pivot = upper.remove(&column).expect("the pivot was chosen among the row's entries");
         let one = graph.constant(1.0);
         let inverse = graph.div(one, pivot.value);
@@ -97,6 +98,7 @@ impl Active {
     /// Takes an entry out of its row, which is not among the sparsest until all of it is known again.
     fn take(&mut self, row: usize, column: usize) -> Entry {
         self.sparsest_rows.remove(&self.row_key(row));
+        // `columns` and `rows` gain and lose each entry together.
         self.rows[row].remove(&column).expect("columns list the rows that have an entry there")
     }
 
