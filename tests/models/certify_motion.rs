@@ -198,7 +198,7 @@ fn slider_crank_by_hand(l1: f64, times: &[f64]) -> Vec<[f64; 2]> {
         d[0] = y[1];
         d[1] = (torque - k * stretch * xp - c * xp * xp * y[1] - 0.5 * change * y[1] * y[1]) / inertia;
     };
-    solve(equation, &[0.0, 0.0], times, 1e-14, 1e-2)
+    solve(equation, &[0.0, 0.0], times, 1e-12, 1e-2)
 }
 
 #[test]
