@@ -25,7 +25,7 @@ pub enum Table {
 }
 
 /// Tests of faults that mount a file system, which only an administrator may, and one that is a source of its own.
-const UNLIKE_OTHERS: [&str; 3] = ["a_full_disk", "a_read_only_folder", "three_hundred_killed_runs"];
+const UNLIKE_OTHERS: [&str; 3] = ["a_full_disk", "a_read_only_folder", "a_run_killed_at_any_change"];
 
 /// Sources of figures.
 pub enum Source {
@@ -270,7 +270,7 @@ pub const CLAIMS: [Claim; 13] = [
             tests("fuzz", "many::", Whole),
             Source::Modules { binary: "program", filter: "faults::names", skipped: &[], when: Quick },
             Source::Modules { binary: "program", filter: "faults::", skipped: &UNLIKE_OTHERS, when: Whole },
-            tests("program", "three_hundred_killed_runs_leave_no_mixture", Whole),
+            tests("program", "a_run_killed_at_any_change_of_its_folder_leaves_no_mixture", Whole),
         ],
         table: Table::Cases,
     },
