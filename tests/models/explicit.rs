@@ -100,6 +100,34 @@ fn tolerance_of_the_bounds_selects_the_explicit_method() {
     assert!(error < 5e-5, "{error:e}");
 }
 
+/// A tolerance of the steps holds beside a looser one of the bounds: a free oscillator, x₀ cos(√(k/m) t).
+#[test]
+fn tolerance_of_the_steps_holds_beside_that_of_the_bounds() {
+    let text = |own: &str| {
+        format!(
+            "
+parameters: {{ k: {{ value: 30, unit: N/m, tolerance: 3% }} }}
+bodies: {{ block: {{ mass: 1.5, coordinates: [x] }} }}
+effects: {{ spring: {{ spring_damper: {{ between: [ground, block], along: x, stiffness: k, free_length: 0 }} }} }}
+initial: {{ block.x: 0.02, block.vx: 0 }}
+outputs: {{ x: block.x }}
+simulation: {{ duration: 3, output_step: 0.03, {own} }}
+bounds: {{ tolerance: 1e-2 }}
+"
+        )
+    };
+    let omega = (30.0_f64 / 1.5).sqrt();
+    for (own, tolerance) in
+        [("tolerance: 1e-9", 1e-9), ("scheme: explicit, tolerance: 1e-9", 1e-9), ("scheme: hht, tolerance: 1e-5", 1e-5)]
+    {
+        let (bounds, _) = run_methods(&read(&text(own)), None);
+        let error = distance_from(&bounds.times, &curve(&bounds, "x"), |t| 0.02 * (omega * t).cos()) / 0.04;
+        let stated = band(output(&bounds, "x"), Method::Chebyshev).error.time / 0.04;
+        println!("{own}: {error:.1e}, stated {stated:.1e}");
+        assert!(error < tolerance && stated < tolerance, "{own}: off by {error:e}, stated {stated:e}");
+    }
+}
+
 /// A stiff bushing: stability limits the explicit steps, which is reported, and `auto` takes HHT-I3.
 #[test]
 fn stiff_models_are_integrated_by_the_scheme() {

@@ -10,7 +10,8 @@ use super::problem::Study;
 use super::reduced::{Found, reduced};
 use super::stepping::tuning::TUNING;
 use super::stepping::{
-    StepPlan, StepSearch, damped_modes, divided, explicit_steps, may_be_explicit, may_extrapolate, refused,
+    StepPlan, StepSearch, damped_modes, divided, explicit_steps, has_tighter_steps, may_be_explicit, may_extrapolate,
+    refused,
 };
 use crate::methods::{Ensembles, Method, MethodResult, Simulated, Validation};
 use crate::numerics::clock::Instant;
@@ -21,7 +22,8 @@ use crate::simulate::{Divided, Schedule, SimulationError};
 pub(super) fn deterministic(study: &Study, plan: &StepPlan) -> Result<Results, RunError> {
     let StepPlan { schedule, controller } = plan;
     let progress = Progress::new(3 * schedule.rows, study.progress);
-    let explicit = match study.request.tolerance.filter(|_| may_be_explicit(study) && !schedule.passes_rows()) {
+    let is_open = may_be_explicit(study) && !has_tighter_steps(study) && !schedule.passes_rows();
+    let explicit = match study.request.tolerance.filter(|_| is_open) {
         None => None,
         Some(allowed) => {
             let found = explicit_steps(

@@ -47,6 +47,13 @@ pub fn may_be_explicit(study: &Study) -> bool {
     }
 }
 
+/// Whether the model has a tolerance of its steps that is tighter than that of the bounds: then the steps are not
+/// chosen anew for the bounds.
+pub fn has_tighter_steps(study: &Study) -> bool {
+    let Stepping::Tolerance(tolerance) = study.description.simulation.stepping else { return false };
+    study.request.tolerance.is_none_or(|bounds| tolerance < bounds)
+}
+
 /// Reports an obstacle to the method as an error, if the model asks for the method.
 pub fn refused(study: &Study, obstacle: Obstacle) -> Result<(), SimulationError> {
     match study.description.simulation.scheme {

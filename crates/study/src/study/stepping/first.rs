@@ -1,7 +1,7 @@
 //! The steps that a study tries first.
 
 use super::controlled::{controlling_samples, schedule_within};
-use super::explicit::{explicit_within, may_be_explicit, refused};
+use super::explicit::{explicit_within, has_tighter_steps, may_be_explicit, refused};
 use super::plan::StepPlan;
 use super::validated::integration;
 use crate::model::Stepping;
@@ -24,7 +24,7 @@ pub fn planned(
         }
         Stepping::Tolerance(tolerance) => tolerance,
     };
-    if may_be_explicit(study) && study.request.tolerance.is_none_or(|bounds| tolerance < bounds) {
+    if may_be_explicit(study) && has_tighter_steps(study) {
         match explicit_within(study, tolerance, &samples(study))? {
             Ok(schedule) => return Ok((StepPlan::fixed(schedule), None)),
             Err(obstacle) => refused(study, obstacle)?,

@@ -19,7 +19,9 @@ mod validated;
 pub use balance::{Balanced, balance};
 pub use controlled::controlling_samples;
 pub use events::{events_followed, events_of_parts, is_random, segmented, segmented_nominal, segmented_samples};
-pub use explicit::{explicit_samples, explicit_steps, integration_decision, may_be_explicit, refused};
+pub use explicit::{
+    explicit_samples, explicit_steps, has_tighter_steps, integration_decision, may_be_explicit, refused,
+};
 pub use first::planned;
 pub use plan::StepPlan;
 pub use search::StepSearch;
