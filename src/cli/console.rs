@@ -14,7 +14,7 @@ use serde::Serialize;
 
 use super::{Failure, Status};
 use crate::overview::{Mark, RED, YELLOW};
-use crate::syntax::{Code, Coded, Diagnostics, harmless, is_harmful};
+use crate::syntax::{Code, Coded, Diagnostics, Record, harmless, is_harmful};
 
 pub(super) use crate::overview::{BOLD, coordinates, count};
 
@@ -42,7 +42,7 @@ pub(super) struct Console {
     failed: bool,
     /// The code of the first error.
     first: Cell<Option<Code>>,
-    /// Texts about files already written, where each is written once.
+    /// Mistakes already written, where each is written once: lines and help may have other values.
     written: Option<RefCell<BTreeSet<String>>>,
 }
 
@@ -129,7 +129,11 @@ impl Console {
         // They are harmless, and have colours of their own.
         let text = diagnostics.render(color);
         self.first.set(self.first.get().or_else(|| diagnostics.code()));
-        if self.written.as_ref().is_none_or(|written| written.borrow_mut().insert(text.clone())) {
+        let mistakes = || {
+            let of_record = |record: Record| format!("{}:{:?}: {}\n", record.file, record.line, record.message);
+            diagnostics.records().into_iter().map(of_record).collect::<String>()
+        };
+        if self.written.as_ref().is_none_or(|written| written.borrow_mut().insert(mistakes())) {
             let _ = anstream::stderr().lock().write_all(text.as_bytes());
         }
     }

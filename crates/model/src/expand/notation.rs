@@ -4,6 +4,9 @@ use crate::grammar::quantity::Dimension;
 use crate::grammar::report::Report;
 use crate::grammar::tolerance::{self, Deviation, Toleranced};
 use crate::grammar::unit::{Unit, number_and_unit};
+use crate::syntax::codes::Code;
+use crate::syntax::diagnostic::Diagnostic;
+use crate::syntax::suggest::clip;
 use crate::syntax::yaml::{Entry, Node, Value};
 
 /// The fields `value`, `tolerance`, `interval`, `plus` and `minus` that a number in one piece stands for. What cannot
@@ -53,6 +56,44 @@ pub fn fits(report: &mut Report, given: &Node, own: &Node) -> bool {
         (Some(given_as), Some(wanted)) => report.check_fits(&given.span, given_as, wanted),
         _ => true,
     }
+}
+
+/// Warns of a bare number, given instead of a parameter's own, that looks as if it were in the unit of that one: `31`
+/// instead of `30 mm` is 31 m.
+pub fn suspect_unit(report: &mut Report, given: &Node, own: &Node) {
+    let [given_fields, own_fields] = [given, own].map(fields_of_parameter);
+    if [&given_fields, &own_fields].into_iter().flatten().any(|field| field.key == "unit") {
+        return;
+    }
+    let Some((node, bare)) = first_number(&given_fields).and_then(|node| {
+        let number: f64 = node.scalar()?.text.trim().parse().ok()?;
+        Some((node, number))
+    }) else {
+        return;
+    };
+    let own_text = first_number(&own_fields).and_then(Node::scalar).map_or("", |scalar| scalar.text.trim());
+    let Some((written, unit_text, _)) = number_and_unit(own_text) else { return };
+    let Some(unit) = Unit::parse(unit_text).ok().filter(|unit| !unit.is_si()) else { return };
+    let orders_from = |number: f64| (bare / number).abs().ln().abs();
+    if orders_from(written) < orders_from(unit.to_si(written)) {
+        let si = unit.dimension.unit();
+        let message = format!("a bare number is in SI units, where the model has `{}`", clip(own_text));
+        let help = if si.is_empty() {
+            format!("write `{bare} {unit_text}`")
+        } else {
+            format!("write `{bare} {unit_text}`, or `{bare} {si}` where that is meant")
+        };
+        report.diagnostics.push(Diagnostic::warning(Code::UnitLeftOut, node.span.clone(), message).help(help));
+    }
+}
+
+/// The value of a parameter, or the least.
+fn first_number(fields: &[Entry]) -> Option<&Node> {
+    let of = |key: &str| fields.iter().find(|field| field.key == key).map(|field| &field.value);
+    of("value").or_else(|| match &of("interval")?.value {
+        Value::Sequence(ends) => ends.first(),
+        _ => None,
+    })
 }
 
 /// A field of a parameter.

@@ -141,6 +141,7 @@ fn draft(reader: &mut Reader, entry: &Entry, replaced: Option<&Override>) -> Par
     let name_span = entry.key_span.clone();
     let mut spec = Spec::read(reader, entry);
     if let Some(wanted) = replaced.filter(|wanted| notation::fits(reader, &wanted.value, &entry.value)) {
+        notation::suspect_unit(reader, &wanted.value, &entry.value);
         spec.replace(reader, &wanted.value);
     }
     if spec.value.is_none() && spec.interval.is_none() && !spec.contradictory {

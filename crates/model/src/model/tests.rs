@@ -182,6 +182,30 @@ fn overrides_replace_value_and_tolerance() {
 }
 
 #[test]
+fn a_bare_number_in_place_of_one_with_a_unit_is_suspicious() {
+    let warnings = |own: &str, given: &str| -> Vec<String> {
+        let bar = BAR.replace("{ value: 0.2, unit: m, tolerance: 1% }", own);
+        let with_scene = format!("{bar}scenes: {{ other: {{ parameters: {{ l: \"{given}\" }} }} }}\n");
+        let option = Override::parse(&format!("l={given}")).unwrap();
+        let [option, scene] = [read_str("x.yaml", &bar, &[option]), read_str("x.yaml", &with_scene, &[])].map(|read| {
+            let found = read.diagnostics.records().into_iter().filter(|record| record.code.id() == "W0305");
+            found.filter_map(|record| record.help).collect::<Vec<_>>()
+        });
+        assert_eq!(option, scene, "{own}, {given}");
+        option
+    };
+    for (own, given) in [("200 mm", "210"), ("200 mm ± 1 mm", "210 ± 2"), ("\"[190, 210] mm\"", "[210, 230]")] {
+        assert_eq!(warnings(own, given), ["write `210 mm`, or `210 m` where that is meant"], "{own}, {given}");
+    }
+    for given in ["0.21", "210 mm", "± 1 mm", "0"] {
+        assert_eq!(warnings("200 mm", given), [] as [&str; 0], "{given}");
+    }
+    for own in ["0.2 m", "{ value: 200, unit: mm }"] {
+        assert_eq!(warnings(own, "210"), [] as [&str; 0], "{own}");
+    }
+}
+
+#[test]
 fn parameters_are_sorted_by_dependence() {
     let order = |parameters: &str| -> Vec<String> {
         let text = BAR.replace("parameters:\n", &format!("parameters:\n{parameters}"));

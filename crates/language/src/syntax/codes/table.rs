@@ -182,6 +182,7 @@ codes! {
         LengthWithoutUnit "W0302" "a large length without a unit",
         DifferenceOfNumbers "W0303" "a difference that may be meant as an interval",
         FractionOfUnits "W0304" "a fraction of units that may be read otherwise",
+        UnitLeftOut "W0305" "a number without the unit that the model gives",
         UnusedExcitation "W0601" "an excitation that nothing uses",
         UnusedParameter "W0701" "a parameter that nothing uses",
         NothingUncertain "W0702" "bounds without an uncertain parameter",

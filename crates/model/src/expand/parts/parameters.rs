@@ -71,6 +71,7 @@ impl Writer<'_, '_> {
             let follows = format!("{definition}.{}", entry.key);
             let mut entry = if let Some(given) = given.iter().find(|given| given.key == entry.key) {
                 notation::fits(self.report, &given.value, &entry.value);
+                notation::suspect_unit(self.report, &given.value, &entry.value);
                 overridden(&entry, given)
             } else if is_shared(&entry.key) {
                 let value = Value::Scalar(Scalar::plain(follows, None));

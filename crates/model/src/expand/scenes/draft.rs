@@ -211,7 +211,10 @@ impl TreeDraft {
             match known {
                 // A number of the URDF is there without being named.
                 _ if has_robot && urdf::is_number(&entry.key) => replace(parameters, entry.clone()),
-                Some(index) => parameters[index] = overridden(&parameters[index], entry),
+                Some(index) => {
+                    notation::suspect_unit(report, &entry.value, &parameters[index].value);
+                    parameters[index] = overridden(&parameters[index], entry);
+                }
                 None => {
                     let names = parameters.iter().map(|known| known.key.as_str());
                     let help = suggest::help(&entry.key, "parameters", names);
