@@ -70,13 +70,13 @@ fn missed_penetration_within_a_step_is_reported() {
 /// 0.981 mm both balance, and 1 mm within they nearly do.
 #[test]
 fn unbalanced_overlap_at_the_start_is_reported() {
-    let start = |initial: &str| {
+    let start = |initial: &str, weight: f64| {
         let (_, summary) = run_methods(
             &read(&format!(
                 "
 bodies: {{ ball: {{ mass: 1, inertia: 1e-3 }} }}
 effects:
-  weight: {{ gravity: {{ acceleration: [0, -9.81] }} }}
+  weight: {{ gravity: {{ acceleration: [0, {weight}] }} }}
   floor: {{ contact: {{ between: [ground, ball], plane: y, radius: 5 mm, impact: {{ stiffness: 1e4, exponent: 1 }} }} }}
 initial: {initial}
 outputs: {{ y: ball.y }}
@@ -87,10 +87,13 @@ simulation: {{ duration: 0.02, output_step: 0.01, step: 1e-4 }}
         );
         summary.overlaps_at_start
     };
-    let found = start("{ ball.y: 1 mm }");
+    let found = start("{ ball.y: 1 mm }", -9.81);
     assert_eq!(found.len(), 1);
     assert!(found[0].contact == "floor" && (found[0].depth - 4e-3).abs() < 1e-12, "{found:?}");
     for balanced in ["{ ball.y: 4 mm }", "{ ball.y: 4.019 mm }", "{ ball.y: 6 mm }"] {
-        assert_eq!(start(balanced), [], "{balanced}");
+        assert_eq!(start(balanced, -9.81), [], "{balanced}");
     }
+    // Surfaces that touch to rounding, and are parted by another force.
+    assert_eq!(start("{ ball.y: 5 mm - 1e-18 }", 9.81), []);
+    assert_eq!(start("{ ball.y: 5 mm - 1e-9 }", 9.81).len(), 1);
 }

@@ -32,7 +32,7 @@ pub fn overlapping(simulator: &Simulator) -> Vec<(String, f64)> {
         let [gap, rate, force] = now else { return None };
         let acceleration = (later[1] - rate) / TUNING.moment_of_rate;
         let is_thrown = acceleration > TUNING.overlapping_unbalanced * force.abs() / system.mass_of_bodies;
-        (*gap < 0.0 && is_thrown).then(|| (name.clone(), -gap))
+        (-gap > TUNING.rounded_gap * system.length && is_thrown).then(|| (name.clone(), -gap))
     };
     names.into_iter().zip(now.chunks_exact(3).zip(later.chunks_exact(3))).filter_map(of_contact).collect()
 }

@@ -23,6 +23,8 @@ tuning! {
         /// A contact is in balance with other forces where its gap accelerates by less than this share of its force
         /// over the mass of all bodies.
         overlapping_unbalanced: f64 = 0.5, moves "warnings of contacts that overlap at the start";
+        /// Surfaces touch that overlap by no more than this share of the model's length: positions are rounded.
+        rounded_gap: f64 = 1e-12, moves "warnings of contacts that overlap at the start";
         /// A residual beyond this is open, for an angle of 1 rad or the length of the model. Schemes that fulfil
         /// velocities drift by less.
         open_residual: f64 = 1e-4, moves "warnings of constraints that are open";

@@ -68,6 +68,17 @@ impl Followed {
     }
 }
 
+/// Whether a sample meets an event before a time, s; `None` if it cannot be followed until that is known.
+pub(super) fn meets_event(mut path: Path, time: f64) -> Option<bool> {
+    loop {
+        let step = path.step(time).ok()?;
+        if step.event.is_some() || step.end >= time {
+            return Some(step.end < time);
+        }
+        path.go_on(step);
+    }
+}
+
 /// The word that a sample spells.
 #[derive(Clone, Debug)]
 pub(super) struct Spelled {
