@@ -74,8 +74,11 @@ pub fn suspect_unit(report: &mut Report, given: &Node, own: &Node) {
     let own_text = first_number(&own_fields).and_then(Node::scalar).map_or("", |scalar| scalar.text.trim());
     let Some((written, unit_text, _)) = number_and_unit(own_text) else { return };
     let Some(unit) = Unit::parse(unit_text).ok().filter(|unit| !unit.is_si()) else { return };
-    let orders_from = |number: f64| (bare / number).abs().ln().abs();
-    if orders_from(written) < orders_from(unit.to_si(written)) {
+    let factor_from = |number: f64| {
+        let ratio = (bare / number).abs();
+        ratio.max(ratio.recip())
+    };
+    if factor_from(written) < factor_from(unit.to_si(written)) {
         let si = unit.dimension.unit();
         let message = format!("a bare number is in SI units, where the model has `{}`", clip(own_text));
         let help = if si.is_empty() {
