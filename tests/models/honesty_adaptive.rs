@@ -197,6 +197,65 @@ fn sums_of_many_oscillators_are_covered() {
     }
 }
 
+/// Explicit steps that err most where a parameter changes a fast decay, and hardly the outputs: the sum of the
+/// velocities of seven damped oscillators, of which each has one uncertain parameter, by their closed forms.
+#[test]
+fn errors_of_steps_that_differ_where_values_do_not_are_covered() {
+    // Mass, stiffness, damping, position and velocity at the start; the uncertain one of these, and its half width.
+    let parts: [([f64; 5], usize, f64); 7] = [
+        ([5.19, 1490.0, 450.0, -0.75, -9.44], 2, 131.0),
+        ([1.66, 1440.0, 292.0, 0.00196, 0.0], 2, 46.1),
+        ([3.38, 21_100.0, 53.0, -0.00651, 0.0], 3, 0.000594),
+        ([0.113, 1110.0, 0.0, -0.0232, 0.248], 3, 0.00204),
+        ([0.421, 588.0, 70.5, -0.00498, 0.0], 2, 14.2),
+        ([3.12, 93_600.0, 2780.0, 0.0441, 0.0], 0, 0.263),
+        ([1.18, 4530.0, 15.7, -0.142, -2.54], 0, 0.0572),
+    ];
+    let velocity = |[m, k, c, x, v]: [f64; 5], t: f64| {
+        let (decay, square) = (0.5 * c / m, k / m);
+        let root = (decay * decay - square).abs().sqrt();
+        let (even, odd) = match decay * decay > square {
+            true => ((root * t).cosh(), (root * t).sinh() / root),
+            false => ((root * t).cos(), (root * t).sin() / root),
+        };
+        (-decay * t).exp() * (v * even - (square * x + decay * v) * odd)
+    };
+    let truth = |t: f64| {
+        let range = |(own, which, half): &([f64; 5], usize, f64)| {
+            let values = (0..=400).map(|i| {
+                let mut own = *own;
+                own[*which] += half * (f64::from(i) / 200.0 - 1.0);
+                velocity(own, t)
+            });
+            values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, u), v| (l.min(v), u.max(v)))
+        };
+        parts.iter().map(range).fold((0.0, 0.0), |(l, u), (lower, upper)| (l + lower, u + upper))
+    };
+    let each = |text: &dyn Fn(usize) -> String| (0..parts.len()).map(text).collect::<String>();
+    let letters = ["m", "k", "c", "x", "v"];
+    let parameters = each(&|i| {
+        let (values, which, half) = &parts[i];
+        let of = |place: usize| match place == *which {
+            true => format!("  {}{i}: {{ value: {}, tolerance: {half} }}\n", letters[place], values[place]),
+            false => format!("  {}{i}: {}\n", letters[place], values[place]),
+        };
+        (0..5).map(of).collect()
+    });
+    let bodies = each(&|i| format!("  b{i}: {{ mass: m{i}, coordinates: [x] }}\n"));
+    let forces =
+        each(&|i| format!("  s{i}: {{ force: {{ on: b{i}, value: [\"-k{i}*b{i}.x - c{i}*b{i}.vx\", 0] }} }}\n"));
+    let initial = each(&|i| format!("  b{i}.x: x{i}\n  b{i}.vx: v{i}\n"));
+    let bounds = run(&read(&format!(
+        "
+parameters:\n{parameters}bodies:\n{bodies}effects:\n{forces}initial:\n{initial}
+outputs: {{ v: b0.vx + b1.vx + b2.vx + b3.vx + b4.vx + b5.vx + b6.vx }}
+simulation: {{ duration: 0.222, step: 2e-4, output_step: 0.006 }}
+bounds: {{ tolerance: 1e-4, budget: {{ solves: 1000 }} }}
+"
+    )));
+    assert!(assert_honest(&bounds, "v", Method::Chebyshev, truth) > 30);
+}
+
 /// A bump between the nodes of a given order, which only the scan meets.
 #[test]
 fn bands_contain_samples_of_other_methods() {

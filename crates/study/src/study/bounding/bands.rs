@@ -6,12 +6,14 @@ use super::{Bounded, Outcome};
 use crate::methods::Method;
 use crate::numerics::{BandError, EMPTY, Range, carries, largest, step_error, time_error, time_error_certified};
 use crate::results::Band;
+use crate::simulate::Integration;
 use crate::study::problem::Study;
 
 /// An output's band by every method, with its error. All that was simulated lies within.
 pub fn bands(study: &Study, bounded: &Bounded, output: usize, rows: usize) -> Vec<Band> {
     let Some((validation, _)) = &bounded.validation else { return Vec::new() };
     let corrections = validation.corrections(output, rows, bounded.switched_from());
+    let is_explicit = bounded.plan.schedule.integration == Integration::Explicit;
     let simulated: Vec<Range> = (0..rows).map(|row| bounded.seen.range(row, output)).collect();
     let band = |(index, (method, outcome)): (usize, &(Method, Outcome))| {
         // As constants, then as functions of the time.
@@ -34,8 +36,8 @@ pub fn bands(study: &Study, bounded: &Bounded, output: usize, rows: usize) -> Ve
             let by_samples = time_error(constant[row], &direct, &halved);
             // Either estimate is enough: from the validation samples near the ends, if there are any, or from the
             // effect of the coordinates' errors on the ends, which is nothing where a range is saturated. (`min` passes
-            // over NaN.)
-            if by_coordinates.is_nan() || carries(constant[row], &direct[..halved.len()]) {
+            // over NaN.) Long explicit steps of a high order err otherwise where values are nearly the same.
+            if by_coordinates.is_nan() || !is_explicit && carries(constant[row], &direct[..halved.len()]) {
                 by_samples.min(by_coordinates)
             } else {
                 by_coordinates

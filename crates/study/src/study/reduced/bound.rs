@@ -81,7 +81,9 @@ pub fn reduced(study: &Study, rows: &Bounded, progress: &Progress) -> Result<Fou
     let with_halved = ReducedEnsemble::new(&motions_halved, store, halved);
     let with_odd = ReducedEnsemble::new(&motions_odd, store, odd);
     let (ratio, at_once) = (schedule.ratio_to(odd), study.is_simulated_at_once());
-    let ensembles = Ensembles { direct: &direct, halved: &with_halved, odd: &with_odd, ratio, at_once };
+    // Steps that are chosen for the outputs are not chosen anew for these.
+    let ensembles =
+        Ensembles { direct: &direct, halved: &with_halved, odd: &with_odd, ratio, at_once, are_explicit: false };
     let slopes = OfValues { study, motions: &motions, values: &direct, schedule };
     let mut results = bounds_of(study, ensembles, &slopes, plan, halved)?;
     let unreliable = rows.unreliable_from().is_some();
