@@ -167,8 +167,6 @@ pub struct Ensembles<'e> {
     pub ratio: f64,
     /// Whether all may be simulated at once: stored simulations are made one after the other.
     pub at_once: bool,
-    /// Whether steps are of the explicit method.
-    pub are_explicit: bool,
 }
 
 /// Samples with halved steps, and some of them with steps at odds with both.
@@ -251,8 +249,8 @@ impl Validation {
         HeldOut { points: &self.points, direct: &self.direct }
     }
 
-    /// Simulates them, for surrogates of this degree at most; `ends` are further ξ at which halved steps count. They
-    /// count at all samples if steps are explicit: long ones err most where they are hardly stable, anywhere.
+    /// Simulates them, for surrogates of this degree at most; `ends` are further ξ at which halved steps count.
+    /// They count at all samples if `halves_all`.
     ///
     /// # Errors
     /// If one cannot be assembled.
@@ -261,6 +259,7 @@ impl Validation {
         observed: Observed,
         degree: usize,
         ends: Vec<Vec<f64>>,
+        halves_all: bool,
     ) -> Result<Self, EnsembleError> {
         let ensemble = ensembles.direct;
         let domain = ensemble.domain();
@@ -268,10 +267,10 @@ impl Validation {
         let spread_over_box = validation(domain.dimension(), degree).split_off(points.len());
         // Steps err most where parameters that act through one number are fastest, which may be in any corner.
         points.extend(ends);
-        let before_spread = points.len();
+        let few = points.len();
         let spread = spread_over_box.len();
         points.extend(spread_over_box);
-        let first = if ensembles.are_explicit { points.len() } else { before_spread };
+        let first = if halves_all { points.len() } else { few };
         let samples = domain.samples(&points);
         let direct = || {
             let (mut direct, mut simulated) = ValidationTable::of(ensemble, &samples, observed, false)?;

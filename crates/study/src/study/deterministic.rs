@@ -16,7 +16,7 @@ use super::stepping::{
 use crate::methods::{Ensembles, Method, MethodResult, Simulated, Validation};
 use crate::numerics::clock::Instant;
 use crate::numerics::{Ledger, Range};
-use crate::simulate::{Divided, Integration, Schedule, SimulationError};
+use crate::simulate::{Divided, Schedule, SimulationError};
 
 /// Every sampled method's bounds are the nominal motion.
 pub(super) fn deterministic(study: &Study, plan: &StepPlan) -> Result<Results, RunError> {
@@ -60,8 +60,7 @@ pub(super) fn deterministic(study: &Study, plan: &StepPlan) -> Result<Results, R
         let [halved, odd] = finer.each_ref().map(|plan| study.motions(plan.steps(), &progress));
         let ratio = schedule.ratio_to(&finer[1].schedule);
         let at_once = study.is_simulated_at_once();
-        let are_explicit = schedule.integration == Integration::Explicit;
-        let ensembles = Ensembles { direct: &motions, halved: &halved, odd: &odd, ratio, at_once, are_explicit };
+        let ensembles = Ensembles { direct: &motions, halved: &halved, odd: &odd, ratio, at_once };
         let validation =
             Validation::of_nominal(ensembles, &nominal.bands, nominal.reached).map_err(simulation_error)?;
         if let Some(allowed) = study.request.tolerance

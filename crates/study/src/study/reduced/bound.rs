@@ -81,9 +81,7 @@ pub fn reduced(study: &Study, rows: &Bounded, progress: &Progress) -> Result<Fou
     let with_halved = ReducedEnsemble::new(&motions_halved, store, halved);
     let with_odd = ReducedEnsemble::new(&motions_odd, store, odd);
     let (ratio, at_once) = (schedule.ratio_to(odd), study.is_simulated_at_once());
-    // Steps that are chosen for the outputs are not chosen anew for these.
-    let ensembles =
-        Ensembles { direct: &direct, halved: &with_halved, odd: &with_odd, ratio, at_once, are_explicit: false };
+    let ensembles = Ensembles { direct: &direct, halved: &with_halved, odd: &with_odd, ratio, at_once };
     let slopes = OfValues { study, motions: &motions, values: &direct, schedule };
     let mut results = bounds_of(study, ensembles, &slopes, plan, halved)?;
     let unreliable = rows.unreliable_from().is_some();
@@ -186,8 +184,9 @@ fn bounds_of(
         return Ok(results);
     }
     let ends = ends_of_combinations(ensembles.direct);
+    // Steps are chosen for outputs, which have halved steps at all samples where these are explicit.
     let validation =
-        Validation::run(ensembles, Observed::Motion, study.request.degree(), ends).map_err(simulation_error)?;
+        Validation::run(ensembles, Observed::Motion, study.request.degree(), ends, false).map_err(simulation_error)?;
     if !slopes.jump()
         && let Some((_, _, ends)) = attained(study, slopes.values, slopes, schedule, &validation)?
     {
