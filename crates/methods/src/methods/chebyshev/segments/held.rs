@@ -32,6 +32,8 @@ pub(super) struct Misses<'l> {
     lines: &'l AxisLines<'l>,
     /// Predicted less simulated outputs (output, sample); NaN at samples that are not in the part.
     values: Vec<f64>,
+    /// Segments of the samples at the row's time.
+    segments: Vec<usize>,
 }
 
 /// Misses of an output: a parabola along each axis through those on the lattice, and the rest.
@@ -41,7 +43,8 @@ struct Missed<'m> {
     /// Largest distance of other samples from the parabolas, if there are any.
     rest: Option<f64>,
     misses: &'m Misses<'m>,
-    output: usize,
+    /// All misses, by sample.
+    values: Vec<f64>,
 }
 
 /// Points that are examined in their segments, with the outputs there and how far errors move these (output, place).
@@ -88,40 +91,28 @@ impl<'l> Misses<'l> {
             let own = predicted[output * at.len()..][..at.len()].iter().zip(simulated(output)).zip(at);
             own.map(|((own, value), point)| if point.is_inside() { own - value } else { f64::NAN }).collect::<Vec<_>>()
         };
-        Self { lines, values: (0..row.outputs).flat_map(of_output).collect() }
+        let values = (0..row.outputs).flat_map(of_output).collect();
+        Self { lines, values, segments: at.iter().map(|point| point.segment(row.time)).collect() }
     }
 
-    /// Misses of an output, whose rest is to be less than this error.
-    fn of(&self, output: usize, error: f64) -> Missed<'_> {
+    /// Misses of an output in a segment, whose rest is to be less than this error.
+    fn of(&self, output: usize, segment: usize, error: f64) -> Missed<'_> {
         let lattice = &self.lines.lattice;
         let count = self.lines.points.len();
-        let values = &self.values[output * count..][..count];
+        let own = self.values[output * count..][..count].iter().zip(&self.segments);
+        let values: Vec<f64> = own.map(|(miss, own)| if *own == segment { *miss } else { f64::NAN }).collect();
         let on_lattice: Vec<f64> = lattice.iter().map(|&sample| values[sample]).collect();
         let is_known = !on_lattice.is_empty() && on_lattice.iter().all(|miss| miss.is_finite());
-        let parted = Missed { on_lattice, rest: None, misses: self, output };
+        let parted = Missed { on_lattice, rest: None, misses: self, values };
         let others: Vec<usize> =
-            (0..count).filter(|sample| !lattice.contains(sample) && values[*sample].is_finite()).collect();
-        let apart = |&sample: &usize| values[sample] - parted.parabolas(&self.lines.points[sample]);
+            (0..count).filter(|sample| !lattice.contains(sample) && parted.values[*sample].is_finite()).collect();
+        let apart = |&sample: &usize| parted.values[sample] - parted.parabolas(&self.lines.points[sample]);
         // The other samples show how much is left between the lattice's points.
         let rest = (is_known && !others.is_empty()).then(|| largest(others.iter().map(apart)));
         match rest.filter(|rest| *rest < error) {
             Some(rest) => Missed { rest: Some(rest), ..parted },
             None => Missed { on_lattice: Vec::new(), ..parted },
         }
-    }
-
-    /// Largest change of an output's misses along an axis; `None` if no such line goes through the corner.
-    fn along(&self, output: usize, axis: usize, corner: &[f64]) -> Option<f64> {
-        let count = self.lines.points.len();
-        let values = &self.values[output * count..][..count];
-        let known = |line: &Vec<usize>| -> Vec<usize> {
-            line.iter().copied().filter(|&sample| values[sample].is_finite()).collect()
-        };
-        let lines: Vec<Vec<usize>> = self.lines.of_axes[axis].iter().map(known).filter(|line| line.len() > 1).collect();
-        let is_told = lines.iter().flatten().any(|&sample| self.lines.points[sample] == corner);
-        let range =
-            |line: &Vec<usize>| Range::of(&line.iter().map(|&sample| values[sample]).collect::<Vec<_>>()).width();
-        is_told.then(|| largest(lines.iter().map(range)))
     }
 }
 
@@ -138,10 +129,22 @@ impl Missed<'_> {
         self.on_lattice.iter().zip(&lines.lattice).map(|(miss, &sample)| weight(sample) * miss).sum()
     }
 
+    /// Largest change of all misses along an axis; `None` if no such line goes through the corner.
+    fn of_lines(&self, axis: usize, corner: &[f64]) -> Option<f64> {
+        let AxisLines { points, of_axes, .. } = self.misses.lines;
+        let known = |line: &Vec<usize>| -> Vec<usize> {
+            line.iter().copied().filter(|&sample| self.values[sample].is_finite()).collect()
+        };
+        let lines: Vec<Vec<usize>> = of_axes[axis].iter().map(known).filter(|line| line.len() > 1).collect();
+        let is_told = lines.iter().flatten().any(|&sample| points[sample] == corner);
+        let range =
+            |line: &Vec<usize>| Range::of(&line.iter().map(|&sample| self.values[sample]).collect::<Vec<_>>()).width();
+        is_told.then(|| largest(lines.iter().map(range)))
+    }
+
     /// Largest change of the rest along an axis.
     fn along(&self, axis: usize, corner: &[f64]) -> Option<f64> {
-        let along = self.misses.along(self.output, axis, corner);
-        [along, self.rest].into_iter().flatten().reduce(f64::min)
+        [self.of_lines(axis, corner), self.rest].into_iter().flatten().reduce(f64::min)
     }
 }
 
@@ -168,13 +171,19 @@ impl Looked {
             let shares = if by_share { surrogate.share(point, corner.segment, row.time).0 - share } else { 0.0 };
             slope * distance + of_share * shares.abs()
         };
-        // Samples give the errors at corners, and the change of errors on the way.
-        let told = misses.filter(|_| !passes).map(|own| own.of(corner.output, corner.error));
+        // Samples of the segment give the errors at corners, and the change of errors on the way. Where errors change
+        // with the share, no parabola gives them, and the change may be anywhere on the way.
+        let told = misses.map(|own| own.of(corner.output, corner.segment, if by_share { 0.0 } else { corner.error }));
         let missed = |xi: &[f64]| told.as_ref().map_or(0.0, |own| own.parabolas(xi));
-        let along: Option<Vec<f64>> = (0..xi.len()).map(|axis| told.as_ref()?.along(axis, xi)).collect();
+        let along: Vec<Option<f64>> = (0..xi.len()).map(|axis| told.as_ref()?.along(axis, xi)).collect();
         let of_axes = |point: &Point| {
-            let along = along.as_ref()?.iter().zip(point.xi.iter().zip(xi));
-            Some(along.map(|(along, (a, b))| along * (slope * (a - b).abs()).min(1.0)).sum::<f64>())
+            let of_axis = |(along, (a, b)): (&Option<f64>, (&f64, &f64))| match (a - b).abs() {
+                0.0 => Some(0.0),
+                _ if by_share => *along,
+                // A polynomial changes by the square of its degree times half of its range.
+                distance => along.map(|along| along * (0.5 * slope * distance).min(1.0)),
+            };
+            along.iter().zip(point.xi.iter().zip(xi)).map(of_axis).sum::<Option<f64>>()
         };
         let own = corner.value - missed(xi);
         let rest = told.as_ref().and_then(|own| own.rest);
@@ -206,10 +215,11 @@ impl Looked {
         };
         // Where slopes are too small to decide, as far from the corner as errors may go on rising.
         let of_axis = |axis: usize| {
-            let along = along.as_ref().map_or(f64::INFINITY, |along| along[axis]);
-            (along - within(axis) / (SAFETY_OF_SURROGATE * TUNING.beside_corner * slope)).max(0.0)
+            let along = along[axis].unwrap_or(f64::INFINITY);
+            let way = if by_share { 0.0 } else { 2.0 / (slope * TUNING.beside_corner) };
+            (along - within(axis) * way / SAFETY_OF_SURROGATE).max(0.0)
         };
-        let near: f64 = if (0..xi.len()).any(|axis| rises(&axis)) { (0..xi.len()).map(of_axis).sum() } else { 0.0 };
+        let near: f64 = (0..xi.len()).filter(rises).map(of_axis).sum();
         let places = self.places.iter().enumerate().map(of_place);
         places.map(|rival| rival.beyond(own_error)).fold(near, f64::max)
     }
@@ -221,7 +231,8 @@ mod tests {
     use crate::numerics::{spread, validation};
 
     fn misses<'l>(lines: &'l AxisLines<'l>, of: impl Fn(&[f64]) -> f64) -> Misses<'l> {
-        Misses { lines, values: lines.points.iter().map(|xi| of(xi)).collect() }
+        let values: Vec<f64> = lines.points.iter().map(|xi| of(xi)).collect();
+        Misses { lines, segments: vec![1; values.len()], values }
     }
 
     #[test]
@@ -230,14 +241,14 @@ mod tests {
         let lines = AxisLines::new(&points);
         let of = |xi: &[f64]| 0.3 - xi[0] + 0.5 * xi[0] * xi[0] * xi[1] - 0.2 * xi[1] * xi[1];
         let own = misses(&lines, of);
-        let missed = own.of(0, 2.0);
+        let missed = own.of(0, 1, 2.0);
         for xi in spread(2, 20) {
             assert!((missed.parabolas(&xi) - of(&xi)).abs() < 1e-15);
         }
         assert!(missed.rest.unwrap() < 1e-15);
         // They lack a cube, by at most 2/√27 of it.
         let own = misses(&lines, |xi| of(xi) + 0.1 * xi[0].powi(3));
-        let rest = own.of(0, 2.0).rest.unwrap();
+        let rest = own.of(0, 1, 2.0).rest.unwrap();
         assert!(rest > 0.03 && rest <= 0.1 * 2.0 / 27_f64.sqrt(), "{rest}");
     }
 
@@ -247,11 +258,16 @@ mod tests {
         let points = validation(2, 4);
         let lines = AxisLines::new(&points);
         let own = misses(&lines, |xi| 1e-3 * xi[1].powi(2));
-        assert_eq!(own.along(0, 0, &[1.0, -1.0]), Some(0.0));
-        assert_eq!(own.along(0, 1, &[1.0, -1.0]), Some(1e-3));
+        let along = |own: &Misses, axis: usize| own.of(0, 1, 2.0).of_lines(axis, &[1.0, -1.0]);
+        assert_eq!(along(&own, 0), Some(0.0));
+        assert_eq!(along(&own, 1), Some(1e-3));
         let hidden = misses(&lines, |xi| if xi[1] > -1.0 { f64::NAN } else { 1e-3 * xi[0] });
-        assert_eq!(hidden.along(0, 0, &[1.0, -1.0]), Some(2e-3));
-        assert_eq!(hidden.along(0, 1, &[1.0, -1.0]), None);
-        assert!(hidden.of(0, 2.0).on_lattice.is_empty());
+        assert_eq!(along(&hidden, 0), Some(2e-3));
+        assert_eq!(along(&hidden, 1), None);
+        assert!(hidden.of(0, 1, 2.0).on_lattice.is_empty());
+        // Those in other segments say nothing of this one.
+        let segments = points.iter().map(|xi| if xi[1] > -1.0 { 2 } else { 1 }).collect();
+        let elsewhere = Misses { segments, ..misses(&lines, |xi| 1e-3 * xi[0]) };
+        assert_eq!((along(&elsewhere, 0), along(&elsewhere, 1)), (Some(2e-3), None));
     }
 }
