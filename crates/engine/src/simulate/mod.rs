@@ -61,7 +61,9 @@ pub use enclosure::{Certifier, Enclosure, EnclosureError, MotionEnclosure, Motio
 pub(crate) use ensemble::Needs;
 pub use ensemble::{EnsembleRun, JetBox};
 pub use error::SimulationError;
-pub use events::{Boundary, Following, SegmentMethod, SegmentRun, WordsEnd, segment_jets, segments_of};
+pub use events::{
+    Boundary, Following, SegmentMethod, SegmentRun, WordsEnd, outputs_of_jets, segment_jets, segments_of,
+};
 pub use explicit::{ExplicitObstacle, explicit_schedule};
 pub use integrators::{integrator, jet_integrator};
 pub use interruption::Interruption;

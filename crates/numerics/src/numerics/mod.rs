@@ -100,8 +100,7 @@ pub use scan::ScanBounds;
 pub use scan_grid::ScanGrid;
 pub use search::{ExtremeSearch, Extremes};
 pub use segments::{
-    BoundaryMargins, BranchMotion, CutMotions, STEP_NODES, SegmentMotions, equispaced_weights, nearest_step,
-    step_nodes, step_weights,
+    BoundaryMargins, BranchMotion, CutMotions, STEP_NODES, SegmentMotions, equispaced_weights, step_nodes, step_weights,
 };
 pub use separation::Separation;
 pub use sobol::SobolDecomposition;

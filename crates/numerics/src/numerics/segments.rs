@@ -7,6 +7,7 @@
 use std::f64::consts::PI;
 use std::sync::LazyLock;
 
+use symdiff::jet::JetSpace;
 use symdiff::math;
 
 /// Nodes of a step, both ends included: those of a dense output of order 7.
@@ -107,6 +108,46 @@ impl SegmentMotions {
             }
         }
         Some(BranchMotion { values, doubts })
+    }
+
+    /// Coefficients of the lines of a jet, whose terms are the samples, at a time on a segment's branch, line by line:
+    /// the polynomial through a step's nodes, at the jet of the share. `None` if the centre is beyond all steps by more
+    /// than `most_beyond` times their length.
+    pub fn jet_at(&self, space: &JetSpace, segment: usize, time: f64, most_beyond: f64) -> Option<Vec<f64>> {
+        let terms = space.len();
+        let product = |a: &[f64], b: &[f64]| {
+            let mut out = vec![0.0; terms];
+            space.mul(a, b, &mut out);
+            out
+        };
+        let [begin, end] = [&self.times[segment], &self.times[segment + 1]];
+        let length: Vec<f64> = end.iter().zip(begin).map(|(end, begin)| end - begin).collect();
+        let mut since: Vec<f64> = begin.iter().map(|begin| -begin).collect();
+        since[0] += time;
+        let mut share = vec![0.0; terms];
+        space.div(&since, &length, &mut share);
+        let steps = &self.steps[segment];
+        let (step, at_centre) = nearest_step(steps, share[0], most_beyond)?;
+        let first = step.checked_sub(1).map_or(0.0, |before| steps[before]);
+        let mut local: Vec<f64> = share.iter().map(|share| share / (steps[step] - first)).collect();
+        local[0] = at_centre;
+        // Lagrange's polynomials, which do not divide by the distance to a node.
+        let nodes = step_nodes();
+        let mut motion = vec![0.0; self.nodes[segment][0].len()];
+        for (number, node) in nodes.iter().enumerate() {
+            let mut weight = vec![0.0; terms];
+            weight[0] = 1.0;
+            for other in nodes.iter().filter(|other| *other != node) {
+                let mut factor: Vec<f64> = local.iter().map(|own| own / (node - other)).collect();
+                factor[0] -= other / (node - other);
+                weight = product(&weight, &factor);
+            }
+            let values = &self.nodes[segment][step * (STEP_NODES - 1) + number];
+            for (line, own) in motion.chunks_exact_mut(terms).zip(values.chunks_exact(terms)) {
+                space.accumulate(&weight, own, line);
+            }
+        }
+        Some(motion)
     }
 
     /// Largest size of each line over all nodes and samples.
@@ -213,7 +254,7 @@ impl BranchWeights {
 /// The step of a segment that a share exceeds least, in lengths of the step, and the share within it: steps next to
 /// events are shorter, so that a longer one before them reaches farther. `None` if the share is beyond the step by more
 /// than `most_beyond` times its length.
-pub fn nearest_step(ends: &[f64], share: f64, most_beyond: f64) -> Option<(usize, f64)> {
+fn nearest_step(ends: &[f64], share: f64, most_beyond: f64) -> Option<(usize, f64)> {
     let local = |step: usize| {
         let begin = step.checked_sub(1).map_or(0.0, |before| ends[before]);
         (share - begin) / (ends[step] - begin)
@@ -298,5 +339,37 @@ mod tests {
             assert_eq!(!(0.0..=0.9).contains(&time), doubts[0] > 0.0, "{time}");
         }
         assert!(motions.at(0, 3.0, 2.0).is_none());
+    }
+
+    /// t³ + 2t in a segment that lasts 1 + 0.1 ξ + 0.02 ξ² s: at a time it depends on no parameter, and it goes on
+    /// beyond the segment.
+    #[test]
+    fn jet_at_a_time_is_independent_of_its_segment() {
+        let space = JetSpace::new(1, 3);
+        let length = vec![1.0, 0.1, 0.02, 0.0];
+        let steps = vec![0.6, 0.95, 1.0];
+        let product = |a: &[f64], b: &[f64]| {
+            let mut out = vec![0.0; space.len()];
+            space.mul(a, b, &mut out);
+            out
+        };
+        let node = |number: usize| -> Vec<f64> {
+            let step = (number / (STEP_NODES - 1)).min(steps.len() - 1);
+            let begin = step.checked_sub(1).map_or(0.0, |before: usize| steps[before]);
+            let share = begin + (steps[step] - begin) * step_nodes()[number - step * (STEP_NODES - 1)];
+            let time: Vec<f64> = length.iter().map(|term| share * term).collect();
+            let cube = product(&time, &product(&time, &time));
+            cube.iter().zip(&time).map(|(cube, time)| cube + 2.0 * time).collect()
+        };
+        let nodes = vec![(0..=steps.len() * (STEP_NODES - 1)).map(node).collect()];
+        let jet =
+            SegmentMotions { samples: vec![0], times: vec![vec![0.0; 4], length.clone()], nodes, steps: vec![steps] };
+        for time in [0.0, 0.3, 0.98, 1.1, 1.3] {
+            let found = jet.jet_at(&space, 0, time, 2.0).unwrap();
+            let expected = [time.powi(3) + 2.0 * time, 0.0, 0.0, 0.0];
+            let off = found.iter().zip(expected).map(|(own, other)| (own - other).abs()).fold(0.0, f64::max);
+            assert!(off < 1e-10, "{found:?} at {time} s");
+        }
+        assert!(jet.jet_at(&space, 0, 3.0, 2.0).is_none());
     }
 }

@@ -16,7 +16,7 @@ use super::stretched::SchemeMotion;
 use super::tuning::TUNING;
 use crate::compile::{SwitchProgram, Tapes};
 use crate::numerics::{Sample, SegmentMotions};
-use crate::simulate::drive::{Motion, MotionSteps};
+use crate::simulate::drive::{Motion, MotionSteps, RowState};
 use crate::simulate::ensemble::{JetBox, JetClosure};
 use crate::simulate::error::SimulationError;
 use crate::simulate::explicit::runge_kutta::RungeKutta;
@@ -161,6 +161,35 @@ pub fn segment_jets(
     }
     let is_known = motions.nodes.iter().flatten().flatten().all(|value| value.is_finite());
     Ok(is_known.then_some((number, motions)))
+}
+
+/// Outputs along the jets of [`segment_jets`] in rows at these times, s: row by row, each output's jet one after the
+/// other. `None` where a row is in none of the segments.
+///
+/// # Errors
+/// Where the centre cannot be assembled.
+pub fn outputs_of_jets(
+    simulator: &Simulator,
+    space: &JetSpace,
+    about: JetBox<'_>,
+    motions: &SegmentMotions,
+    times: impl Iterator<Item = f64>,
+) -> Result<Option<Vec<f64>>, SimulationError> {
+    let sample: Sample = about.center.iter().copied().collect();
+    let start = simulator.assemble(1, 0.0, |_| sample.clone())?;
+    let mut closure = JetClosure::new(simulator, space, about, &start)?;
+    let mut row = vec![0.0; simulator.system.outputs.len() * space.len()];
+    let mut outputs = Vec::new();
+    for time in times {
+        let begun = motions.times.partition_point(|begin| begin[0] <= time);
+        let segment = begun.clamp(1, motions.nodes.len()) - 1;
+        // The last row may be a little beyond the last segment, by rounding.
+        let Some(mut motion) = motions.jet_at(space, segment, time, 0.5) else { return Ok(None) };
+        closure.close(time, &mut motion);
+        closure.observe(&mut row);
+        outputs.extend_from_slice(&row);
+    }
+    Ok(Some(outputs))
 }
 
 /// Values of switches in jets.

@@ -29,7 +29,7 @@ mod tile;
 pub(crate) mod tuning;
 mod word;
 
-pub use jets::segment_jets;
+pub use jets::{outputs_of_jets, segment_jets};
 pub use run::SegmentRun;
 pub(in crate::simulate) use saltation::{EventAdjoints, EventSteps};
 pub use segments::{Boundary, Following, SegmentMethod, WordsEnd};

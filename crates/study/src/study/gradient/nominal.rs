@@ -6,7 +6,9 @@ use symdiff::jet::JetSpace;
 use super::GradientError;
 use super::tuning::TUNING;
 use crate::numerics::Sample;
-use crate::simulate::{JetBox, Schedule, SimulationError, Steps, Wanted, gradients, switched_from};
+use crate::simulate::{
+    JetBox, Schedule, SimulationError, Steps, Wanted, gradients, outputs_of_jets, segment_jets, switched_from,
+};
 use crate::study::ensemble::{Progress, jet_about};
 use crate::study::problem::Study;
 use crate::study::stepping::{StepPlan, segmented_nominal};
@@ -52,8 +54,7 @@ pub fn along_nominal(study: &Study, plan: &StepPlan, outputs: &[usize]) -> Resul
 fn followed(study: &Study, schedule: &Schedule, outputs: &[usize]) -> Result<Vec<AtRow>, GradientError> {
     let parameters = study.domain.dimension() as f64;
     let backwards = TUNING.backwards * (schedule.rows * outputs.len()) as f64;
-    let is_jet = !schedule.integration.is_cut() && !study.simulator.system.analysis.visits();
-    if is_jet && parameters < backwards {
+    if !study.simulator.system.analysis.visits() && parameters < backwards {
         // If jets stop or are no numbers, adjoints may go on.
         if let Some(found) = forwards(study, schedule, outputs)? {
             return Ok(found);
@@ -65,26 +66,45 @@ fn followed(study: &Study, schedule: &Schedule, outputs: &[usize]) -> Result<Vec
 /// Derivatives by a jet of the first order; `None` if it stops, or is not finite.
 fn forwards(study: &Study, schedule: &Schedule, outputs: &[usize]) -> Result<Option<Vec<AtRow>>, SimulationError> {
     let space = JetSpace::new(study.domain.dimension(), 1);
-    let half_width = vec![1.0; study.domain.dimension()];
+    // Instants of events are solved for to shares of the duration, for changes of parameters within their tolerances.
+    let unit = |axis: usize| if schedule.integration.is_cut() { study.domain.half_width(axis) } else { 1.0 };
+    let half_width: Vec<f64> = (0..study.domain.dimension()).map(unit).collect();
     let about = JetBox { center: &study.domain.nominal, half_width: &half_width };
-    // The bounds' progress is at its end.
-    let progress = Progress::new(usize::MAX, &|_| ());
-    let motions = study.motions(Steps { schedule, controller: None }, &progress);
-    let lines = study.simulator.system.outputs.len() * space.len();
-    let mut found = Vec::with_capacity(schedule.rows * outputs.len());
-    let simulated = jet_about(&motions, &space, about, &mut |_, values| {
-        for row in values.chunks_exact(lines) {
-            found.extend(outputs.iter().map(|&output| {
-                let of_output = &row[output * space.len()..][..space.len()];
-                AtRow { value: of_output[0], by_parameters: of_output[1..].to_vec() }
-            }));
+    let rows = match schedule.segments() {
+        Some(segments) => {
+            let jets = segment_jets(&study.simulator, &space, about, segments, schedule.end())?;
+            let times = (0..schedule.rows).map(|row| schedule.time(row));
+            jets.map(|(_, jets)| outputs_of_jets(&study.simulator, &space, about, &jets, times)).transpose()?.flatten()
         }
-    })?;
+        None => by_steps(study, schedule, &space, about)?,
+    };
     if study.interruption.is_asked() {
         return Err(SimulationError::Interrupted);
     }
+    let lines = study.simulator.system.outputs.len() * space.len();
+    let of_row = |row: &[f64]| -> Vec<AtRow> {
+        let jets = outputs.iter().map(|&output| &row[output * space.len()..][..space.len()]);
+        let derivatives = |jet: &[f64]| jet[1..].iter().zip(&half_width).map(|(by, unit)| by / unit).collect();
+        jets.map(|jet| AtRow { value: jet[0], by_parameters: derivatives(jet) }).collect()
+    };
+    let found = rows.map(|rows| rows.chunks_exact(lines).flat_map(of_row).collect::<Vec<AtRow>>());
     let is_known = |own: &AtRow| own.value.is_finite() && own.by_parameters.iter().all(|by| by.is_finite());
-    Ok(Some(found).filter(|found| simulated.missing == 0 && found.iter().all(is_known)))
+    Ok(found.filter(|found| found.iter().all(is_known)))
+}
+
+/// Jets of all outputs by the steps of a schedule, row by row; `None` if they stop.
+fn by_steps(
+    study: &Study,
+    schedule: &Schedule,
+    space: &JetSpace,
+    about: JetBox,
+) -> Result<Option<Vec<f64>>, SimulationError> {
+    // The bounds' progress is at its end.
+    let progress = Progress::new(usize::MAX, &|_| ());
+    let motions = study.motions(Steps { schedule, controller: None }, &progress);
+    let mut rows = Vec::new();
+    let simulated = jet_about(&motions, space, about, &mut |_, values| rows.extend_from_slice(values))?;
+    Ok((simulated.missing == 0).then_some(rows))
 }
 
 /// Derivatives by adjoints.

@@ -7,7 +7,7 @@ use super::piece::{Piece, Told};
 use super::seeds::Lattice;
 use super::surrogate::Point;
 use super::tuning::TUNING;
-use crate::numerics::{STEP_NODES, SegmentMotions, Surrogate, SurrogateWork, largest, nearest_step, step_nodes};
+use crate::numerics::{SegmentMotions, Surrogate, SurrogateWork, largest};
 
 /// Source of the polynomials of values.
 #[derive(Clone, Copy)]
@@ -107,7 +107,9 @@ impl Branch {
                 own.concat()
             }
             (None, PolynomialSource::Grid(grid)) => grid.coefficients(&of_samples()?, &mut SurrogateWork::default()),
-            (None, PolynomialSource::Jets(space)) => jet_at(space, &piece.motions.fitted, segment, time)?,
+            (None, PolynomialSource::Jets(space)) => {
+                piece.motions.fitted.jet_at(space, segment, time, TUNING.beyond_longest)?
+            }
         };
         let of_line = |(line, own): (usize, &[f64])| {
             let least = doubts[line].max(surrogate.truncation(own));
@@ -149,80 +151,4 @@ fn common_segment(piece: &Piece, lattice: &Lattice, time: f64) -> Option<usize> 
     };
     let fitted = piece.surrogate.is_jet() || of_motions(&piece.motions.fitted);
     (fitted && of_motions(&piece.motions.held_out) && lattice.points().iter().all(of_point)).then_some(segment)
-}
-
-/// Coefficients of the lines of a jet at a time, line by line: the polynomial through a step's nodes, at the share that
-/// the time is at. `None` if its centre is too far beyond the segment.
-fn jet_at(space: &JetSpace, jet: &SegmentMotions, segment: usize, time: f64) -> Option<Vec<f64>> {
-    let terms = space.len();
-    let product = |a: &[f64], b: &[f64]| {
-        let mut out = vec![0.0; terms];
-        space.mul(a, b, &mut out);
-        out
-    };
-    let [begin, end] = [&jet.times[segment], &jet.times[segment + 1]];
-    let length: Vec<f64> = end.iter().zip(begin).map(|(end, begin)| end - begin).collect();
-    let mut since: Vec<f64> = begin.iter().map(|begin| -begin).collect();
-    since[0] += time;
-    let mut share = vec![0.0; terms];
-    space.div(&since, &length, &mut share);
-    let (step, at_centre) = nearest_step(&jet.steps[segment], share[0], TUNING.beyond_longest)?;
-    let steps = &jet.steps[segment];
-    let first = step.checked_sub(1).map_or(0.0, |before| steps[before]);
-    let mut local: Vec<f64> = share.iter().map(|share| share / (steps[step] - first)).collect();
-    local[0] = at_centre;
-    // Lagrange's polynomials, which do not divide by the distance to a node.
-    let nodes = step_nodes();
-    let mut motion = vec![0.0; jet.nodes[segment][0].len()];
-    for (number, node) in nodes.iter().enumerate() {
-        let mut weight = vec![0.0; terms];
-        weight[0] = 1.0;
-        for other in nodes.iter().filter(|other| *other != node) {
-            let mut factor: Vec<f64> = local.iter().map(|own| own / (node - other)).collect();
-            factor[0] -= other / (node - other);
-            weight = product(&weight, &factor);
-        }
-        let values = &jet.nodes[segment][step * (STEP_NODES - 1) + number];
-        for (line, own) in motion.chunks_exact_mut(terms).zip(values.chunks_exact(terms)) {
-            space.accumulate(&weight, own, line);
-        }
-    }
-    Some(motion)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// t³ + 2t in a segment that lasts 1 + 0.1 ξ + 0.02 ξ² s: at a time it depends on no parameter, and it goes on
-    /// beyond the segment.
-    #[test]
-    fn jet_at_a_time_is_independent_of_its_segment() {
-        let space = JetSpace::new(1, 3);
-        let length = vec![1.0, 0.1, 0.02, 0.0];
-        let steps = vec![0.6, 0.95, 1.0];
-        let product = |a: &[f64], b: &[f64]| {
-            let mut out = vec![0.0; space.len()];
-            space.mul(a, b, &mut out);
-            out
-        };
-        let node = |number: usize| -> Vec<f64> {
-            let step = (number / (STEP_NODES - 1)).min(steps.len() - 1);
-            let begin = step.checked_sub(1).map_or(0.0, |before: usize| steps[before]);
-            let share = begin + (steps[step] - begin) * step_nodes()[number - step * (STEP_NODES - 1)];
-            let time: Vec<f64> = length.iter().map(|term| share * term).collect();
-            let cube = product(&time, &product(&time, &time));
-            cube.iter().zip(&time).map(|(cube, time)| cube + 2.0 * time).collect()
-        };
-        let nodes = vec![(0..=steps.len() * (STEP_NODES - 1)).map(node).collect()];
-        let jet =
-            SegmentMotions { samples: vec![0], times: vec![vec![0.0; 4], length.clone()], nodes, steps: vec![steps] };
-        for time in [0.0, 0.3, 0.98, 1.1, 1.3] {
-            let found = jet_at(&space, &jet, 0, time).unwrap();
-            let expected = [time.powi(3) + 2.0 * time, 0.0, 0.0, 0.0];
-            let off = largest(found.iter().zip(expected).map(|(own, other)| own - other));
-            assert!(off < 1e-10, "{found:?} at {time} s");
-        }
-        assert!(jet_at(&space, &jet, 0, 3.0).is_none());
-    }
 }
