@@ -62,6 +62,8 @@ impl Norms {
 pub struct ModelSpace {
     jets: JetSpace,
     degrees: Vec<usize>,
+    /// First monomial of each degree, and the end.
+    starts: Vec<usize>,
     /// (d+1)^k of each degree.
     weights: Vec<f64>,
     /// See [`ModelSpace::with_ranges_of_signs`].
@@ -98,9 +100,10 @@ impl ModelSpace {
     pub fn new(variables: usize, order: usize) -> Self {
         assert!(order <= MAX_ORDER, "models have an order of at most {MAX_ORDER}");
         let jets = JetSpace::new(variables, order);
-        let degrees = (0..jets.len()).map(|r| jets.monomials().degree(r)).collect();
+        let degrees: Vec<usize> = (0..jets.len()).map(|r| jets.monomials().degree(r)).collect();
+        let starts = (0..=order + 1).map(|d| degrees.partition_point(|&degree| degree < d)).collect();
         let weights = (0..=order).map(|d| ((d + 1) as f64).powi(variables.max(1) as i32)).collect();
-        Self { jets, degrees, weights, signs_are_ranges: false }
+        Self { jets, degrees, starts, weights, signs_are_ranges: false }
     }
 
     /// Makes unknown signs range between −1 and 1 instead of being unknown: correct for the derivative of a maximum,
@@ -133,8 +136,10 @@ impl ModelSpace {
     pub fn norms(&self, a: &[f64]) -> Norms {
         let (polynomial, radius) = self.split(a);
         let mut of_degree = [0.0; MAX_ORDER + 2];
-        for (c, &degree) in polynomial.iter().zip(&self.degrees) {
-            of_degree[degree] += c.abs();
+        // Monomials ascend in degree: each sum stays in a register.
+        let ends = self.starts.windows(2);
+        for (sum, ends) in of_degree.iter_mut().zip(ends) {
+            *sum = polynomial[ends[0]..ends[1]].iter().fold(0.0, |sum, c| sum + c.abs());
         }
         let mut weighted = 0.0;
         let mut tails = [0.0; MAX_ORDER + 2];
