@@ -29,8 +29,8 @@ pub(super) struct Next {
     pub end: Approximation,
     /// The frame at the cell's end.
     pub frame: Frame,
-    /// Outputs over the cell.
-    pub ranges: Vec<Interval>,
+    /// Models of the outputs over the cell, one after the other.
+    pub outputs: Vec<f64>,
     /// Defect of the accelerations, relative to their size.
     pub defect: f64,
     /// Whether that is so large that a knot must be in the cell. Much shorter cells may be better then even if one of

@@ -291,7 +291,7 @@ impl<'s> MotionEnclosure<'s> {
         // The memory has the tube, and all accelerations and multipliers in it.
         self.coarse.run(self.program.observe());
         let outputs = self.program.outputs.iter();
-        let ranges = outputs.map(|&register| coarse.range(self.coarse.model(register))).collect();
+        let outputs = outputs.flat_map(|&register| self.coarse.model(register)).copied().collect();
         let end = approximation.at(fine, 1.0);
         let frame = self.frame.advance(coarse, &proven.flow, &radii(fine, &end)).ok_or(EnclosureError::Unproven)?;
         let errors = frame.error(&coarse.box_of);
@@ -302,13 +302,15 @@ impl<'s> MotionEnclosure<'s> {
             return Err(if passes_knot { EnclosureError::Unproven } else { EnclosureError::TooWide });
         }
         let gain = frame.gain();
-        Ok(Next { cell, approximation, proven, end, frame, ranges, defect, passes_knot, tails, gain })
+        Ok(Next { cell, approximation, proven, end, frame, outputs, defect, passes_knot, tails, gain })
     }
 
     /// Goes on to the end of a cell.
     fn accept(&mut self, next: Next) {
         let is_easy = next.may_be_doubled();
-        let Next { cell, approximation, proven, end, frame, ranges, .. } = next;
+        let Next { cell, approximation, proven, end, frame, outputs, .. } = next;
+        let coarse = &self.spaces.coarse;
+        let ranges = outputs.chunks_exact(coarse.cell.size()).map(|model| coarse.range(model)).collect();
         let frame = std::mem::replace(&mut self.frame, frame);
         self.start = end;
         self.time = cell.end();
