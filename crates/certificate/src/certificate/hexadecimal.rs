@@ -1,22 +1,39 @@
 //! Numbers as hexadecimal floats, to the bit: `-0x1.8p-3` is −0.1875, as C's `%a` writes it.
 
+use std::fmt::Write as _;
+
 /// Bits of a mantissa behind the point.
 const BITS: u32 = 52;
 
 /// A finite number's text.
 pub(super) fn write(value: f64) -> String {
+    let mut text = String::new();
+    append(value, &mut text);
+    text
+}
+
+/// Appends a finite number's text.
+pub(super) fn append(value: f64, text: &mut String) {
     let bits = value.to_bits();
-    let sign = if value.is_sign_negative() { "-" } else { "" };
+    text.push_str(if value.is_sign_negative() { "-0" } else { "0" });
     let (exponent, fraction) = ((bits >> BITS) & 0x7ff, bits & ((1 << BITS) - 1));
     if exponent == 0 && fraction == 0 {
-        return format!("{sign}0");
+        return;
     }
-    let (leading, exponent) = if exponent == 0 { (0, -1022) } else { (1, exponent as i64 - 1023) };
-    let digits = format!("{fraction:013x}");
-    match digits.trim_end_matches('0') {
-        "" => format!("{sign}0x{leading}p{exponent}"),
-        digits => format!("{sign}0x{leading}.{digits}p{exponent}"),
+    let (leading, exponent) = if exponent == 0 { ("x0", -1022) } else { ("x1", exponent as i64 - 1023) };
+    text.push_str(leading);
+    if fraction != 0 {
+        text.push('.');
+        // Digits from the left, as long as any that is not zero is left.
+        let (mut rest, mut place) = (fraction, BITS);
+        while rest != 0 {
+            place -= 4;
+            text.push(char::from(b"0123456789abcdef"[(rest >> place) as usize]));
+            rest &= (1 << place) - 1;
+        }
     }
+    // A text takes all that is written to it.
+    let _ = write!(text, "p{exponent}");
 }
 
 /// The number of a text that [`write`] makes; `None` of any other.

@@ -4,7 +4,7 @@
 //! is a power of two and its ends are multiples of it, so that t(τ) has no rounding.
 
 use symdiff::Interval;
-use symdiff::taylor_model::{ModelSpace, up};
+use symdiff::taylor_model::{MAX_ORDER, ModelSpace, up};
 
 use super::matrix::Models;
 use super::tuning::TUNING;
@@ -113,16 +113,19 @@ impl Space {
     pub fn at(&self, model: &[f64], tau: f64, into: &mut [f64]) {
         into.fill(0.0);
         let (mut size, mut slope) = (0.0, 0.0);
+        let order = self.cell.jets().monomials().order();
+        let mut powers = [0.0; MAX_ORDER + 1];
+        powers[..=order].iter_mut().enumerate().for_each(|(power, of_tau)| *of_tau = tau.powi(power as i32));
         for ((&c, &power), &to) in model.iter().zip(&self.power).zip(&self.without_time) {
-            into[to] += c * tau.powi(power as i32);
+            into[to] += c * powers[power];
             size += c.abs();
             slope += power as f64 * c.abs();
         }
-        let order = self.power.iter().copied().max().unwrap_or(0) as f64;
+        let order = order as f64;
         // A power has at most twice `order` roundings, and a sum at most order + 1 terms; ends are exact.
-        let powers = if tau.abs() == 1.0 { 0.0 } else { 2.0 * order };
+        let roundings = if tau.abs() == 1.0 { 0.0 } else { 2.0 * order };
         let late = if tau.abs() == 1.0 { 0.0 } else { 2.0 * f64::EPSILON * slope };
-        let radius = model[model.len() - 1] + HALF_UNIT * (order + 3.0 + powers) * size + late;
+        let radius = model[model.len() - 1] + HALF_UNIT * (order + 3.0 + roundings) * size + late;
         into[self.box_of.size() - 1] = up(radius);
     }
 

@@ -62,8 +62,14 @@ struct TableLine {
 
 /// Numbers, separated by spaces.
 fn numbers(values: &[f64]) -> String {
-    let texts: Vec<String> = values.iter().map(|&value| hexadecimal::write(value)).collect();
-    texts.join(" ")
+    let mut text = String::new();
+    for (index, &value) in values.iter().enumerate() {
+        if index > 0 {
+            text.push(' ');
+        }
+        hexadecimal::append(value, &mut text);
+    }
+    text
 }
 
 /// Texts of polynomials, without the zeros at their ends.
