@@ -24,12 +24,12 @@ pub(super) fn append(value: f64, text: &mut String) {
     text.push_str(leading);
     if fraction != 0 {
         text.push('.');
-        // Digits from the left, as long as any that is not zero is left.
-        let (mut rest, mut place) = (fraction, BITS);
+        // Digits from the left, without zeros at the end.
+        let (mut rest, mut shift) = (fraction, BITS);
         while rest != 0 {
-            place -= 4;
-            text.push(char::from(b"0123456789abcdef"[(rest >> place) as usize]));
-            rest &= (1 << place) - 1;
+            shift -= 4;
+            text.push(char::from(b"0123456789abcdef"[(rest >> shift) as usize]));
+            rest &= (1 << shift) - 1;
         }
     }
     // A text takes all that is written to it.
