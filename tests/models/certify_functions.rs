@@ -7,7 +7,7 @@ use mbint::results::{Bounds, Method};
 use super::certify_motion::{box_of, certify, excess};
 use crate::common::Subject;
 use crate::common::*;
-use crate::runge_kutta::solve;
+use crate::dop853::solve;
 
 /// Rounding of closed forms.
 const ROUNDING: f64 = 1e-15;

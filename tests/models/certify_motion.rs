@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use crate::common::Subject;
 use crate::common::measured::Case;
 use crate::common::*;
-use crate::runge_kutta::solve;
+use crate::dop853::solve;
 
 /// Error of the reference: DOP853's tolerance, gathered over the steps.
 const REFERENCE: f64 = 1e-11;

@@ -11,8 +11,8 @@
 #[allow(dead_code, reason = "shared with the tests of elements")]
 mod common;
 
-#[path = "../falsify/runge_kutta.rs"]
-mod runge_kutta;
+#[path = "../common/dop853.rs"]
+mod dop853;
 
 mod accelerations;
 mod assembly;

@@ -18,7 +18,7 @@ pub use oscillators::decay;
 
 use crate::draw::{Bounds, Combine, Curves, Draw, Output, Parameter, Stepping, Term, Time, Wrap};
 use crate::random::Random;
-use crate::{runge_kutta, truth};
+use crate::{dop853, truth};
 
 /// Index and time scale of a mechanism to be drawn.
 pub struct Scale {
@@ -297,7 +297,7 @@ fn integrated<const N: usize, const C: usize>(
     observe: impl Fn(&[f64], f64, &[f64]) -> [f64; C] + Send + Sync + 'static,
 ) -> Curves {
     std::sync::Arc::new(move |p, times| {
-        let solution = runge_kutta::solve(|t, y, d| slope(p, t, y, d), &start(p), times, TOLERANCE, longest);
+        let solution = dop853::solve(|t, y, d| slope(p, t, y, d), &start(p), times, TOLERANCE, longest);
         let mut curves = vec![Vec::with_capacity(times.len()); C];
         for (&t, y) in times.iter().zip(&solution) {
             for (curve, value) in curves.iter_mut().zip(observe(p, t, y)) {

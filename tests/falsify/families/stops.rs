@@ -4,9 +4,9 @@ use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
 use super::{Scale, lines, named, parameter};
+use crate::dop853;
 use crate::draw::{Curves, Term};
 use crate::random::{Random, digits};
-use crate::runge_kutta;
 
 /// Error of each step, relative to the size of the state.
 const TOLERANCE: f64 = 1e-14;
@@ -30,7 +30,7 @@ pub fn located<const N: usize, const S: usize, const C: usize>(
         let switches = |_: f64, y: &[f64]| switches(p, &in_si(y));
         let mut start = start(p);
         start.iter_mut().zip(units).for_each(|(value, unit)| *value /= unit);
-        let solution = runge_kutta::solve_located(slope, switches, &start, times, TOLERANCE, longest);
+        let solution = dop853::solve_located(slope, switches, &start, times, TOLERANCE, longest);
         let mut curves = vec![Vec::with_capacity(times.len()); C];
         for y in &solution {
             curves.iter_mut().zip(observe(&in_si(y))).for_each(|(curve, value)| curve.push(value));

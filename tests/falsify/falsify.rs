@@ -16,6 +16,8 @@
 
 #![allow(clippy::disallowed_methods, reason = "tests compare with the standard library's functions")]
 
+#[path = "../common/dop853.rs"]
+mod dop853;
 #[path = "../common/measured.rs"]
 #[allow(dead_code, reason = "shared with the tests of models")]
 mod measured;
@@ -30,7 +32,6 @@ mod random;
 mod record;
 mod ridge;
 mod rows;
-mod runge_kutta;
 mod search;
 mod shrink;
 mod table;
