@@ -1,5 +1,6 @@
 //! `instances:`, copies of assemblies with names, parameters and placements of their own.
 
+use std::collections::HashMap;
 use std::sync::Arc;
 
 use super::Writer;
@@ -249,13 +250,18 @@ impl Writer<'_, '_> {
 
     /// Reports instances that are called like something else, and names that are there twice.
     fn check_names(&mut self, instances: &[Entry]) {
-        for instance in instances {
-            let sections = ["bodies", "joints", "effects", "states", "parameters"];
-            let known = sections.iter().flat_map(|section| self.entries(section));
-            let other = known.into_iter().find(|entry| entry.key == instance.key).map(|entry| entry.key_span.clone());
-            let other = other.or_else(|| self.definitions.get(&instance.key).map(|entry| entry.key_span.clone()));
-            if let Some(other) = other {
-                self.twice(&instance.key, &instance.key_span, &other);
+        let sections = ["bodies", "joints", "effects", "states", "parameters"];
+        let definitions = self.definitions.values().map(AsRef::as_ref);
+        let entries = sections.iter().flat_map(|section| self.entries(section)).chain(definitions);
+        let mut first: HashMap<&str, &Span> = HashMap::new();
+        for entry in entries {
+            first.entry(&entry.key).or_insert(&entry.key_span);
+        }
+        let known: Vec<Option<Span>> =
+            instances.iter().map(|instance| first.get(instance.key.as_str()).copied().cloned()).collect();
+        for (instance, known) in instances.iter().zip(known) {
+            if let Some(known) = known {
+                self.twice(&instance.key, &instance.key_span, &known);
             }
         }
         for section in ["parameters", "bodies", "joints", "effects", "states", "initial", "guess"] {
@@ -268,7 +274,7 @@ impl Writer<'_, '_> {
 
 /// Names that occur again: name, location, first location.
 fn duplicates(entries: &[Entry]) -> Vec<(String, Span, Span)> {
-    let mut first = std::collections::HashMap::new();
+    let mut first = HashMap::new();
     let mut found = Vec::new();
     for entry in entries {
         match first.get(entry.key.as_str()) {
