@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 use super::closure::Closure;
 use super::expansion::{Expansion, Moves};
-use crate::numerics::{ParameterBox, SparseBasis, SparseWork};
+use crate::numerics::{ParameterBox, PointSet, SparseBasis, SparseWork};
 
 /// A surrogate over the whole box.
 #[derive(Clone, Debug, Default)]
@@ -194,7 +194,7 @@ impl KeptSurrogate {
         let coefficients: Vec<f64> =
             outputs.iter().flat_map(|&output| part.rows[row].of_output(output, terms).to_vec()).collect();
         let mut values = vec![0.0; outputs.len() * samples.len()];
-        part.basis.values(&points, &coefficients, &mut values, &mut SparseWork::default());
+        part.basis.values(&points.points(), &coefficients, &mut values, &mut SparseWork::default());
         Some(values)
     }
 
@@ -221,7 +221,7 @@ impl KeptSurrogate {
             let (inside, outside): (Vec<usize>, Vec<usize>) = left.into_iter().partition(holds);
             left = outside;
             let points = part.points(inside.iter().map(|&index| samples[index].as_ref()));
-            let found = part.values(row, outputs, &points, closures);
+            let found = part.values(row, outputs, &points.points(), closures);
             for (of_output, found) in
                 values.chunks_exact_mut(samples.len().max(1)).zip(found.chunks_exact(inside.len().max(1)))
             {
@@ -239,22 +239,21 @@ impl KeptBox {
     }
 
     /// ξ of samples; 0 along parameters without width.
-    fn points<'s>(&self, samples: impl Iterator<Item = &'s [f64]>) -> Vec<Vec<f64>> {
+    fn points<'s>(&self, samples: impl ExactSizeIterator<Item = &'s [f64]>) -> PointSet {
         let of = |axis: usize| (self.domain.midpoint(axis), self.domain.half_width(axis));
         let axes: Vec<(f64, f64)> = (0..self.domain.dimension()).map(of).collect();
-        let along = |value: f64, axis: usize| match axes[axis] {
-            (middle, half) if half > 0.0 => (value - middle) / half,
+        let along = |sample: &[f64], axis: usize| match axes[axis] {
+            (middle, half) if half > 0.0 => (sample[axis] - middle) / half,
             _ => 0.0,
         };
-        let of_sample = |sample: &[f64]| (0..axes.len()).map(|axis| along(sample[axis], axis)).collect();
-        samples.map(of_sample).collect()
+        PointSet::mapped(samples, axes.len(), along)
     }
 
     fn values<'c>(
         &self,
         row: usize,
         outputs: &[usize],
-        points: &[Vec<f64>],
+        points: &[&[f64]],
         closures: &'c [Box<dyn Closure + 'c>],
     ) -> Vec<f64> {
         let row = &self.rows[row];

@@ -13,7 +13,7 @@ use rayon::prelude::*;
 
 use super::tuning::TUNING;
 use crate::methods::{self, KeptSurrogate};
-use crate::numerics::{BandError, SparseBasis};
+use crate::numerics::{BandError, PointSet, SparseBasis};
 use crate::reduce::Subsystem;
 use crate::simulate::{SimulationError, Simulator};
 
@@ -146,8 +146,7 @@ impl Kept {
     pub fn own_values<P: AsRef<[f64]>>(&self, row: usize, output: usize, samples: &[P]) -> Option<Vec<f64>> {
         let (number, index) = self.indices[output];
         let Placed { part, parameters, .. } = &self.parts[number];
-        let pick = |sample: &P| -> Vec<f64> { parameters.iter().map(|&own| sample.as_ref()[own]).collect() };
-        part.surrogate.own_values(row, &[index], &samples.iter().map(pick).collect::<Vec<_>>())
+        part.surrogate.own_values(row, &[index], &PointSet::of_coordinates(samples, parameters).points())
     }
 
     /// Margins of all requirements. `None` if the model has none, or one of them is not known.
@@ -217,10 +216,9 @@ impl Evaluator<'_> {
             if indices.is_empty() {
                 continue;
             }
-            let pick = |sample: &P| parameters.iter().map(|&parameter| sample.as_ref()[parameter]).collect();
-            let own: Vec<Vec<f64>> = samples.iter().map(pick).collect();
+            let own = PointSet::of_coordinates(samples, parameters);
             let of_part: Vec<usize> = indices.iter().map(|&index| self.kept.indices[outputs[index]].1).collect();
-            let found = part.surrogate.values(row, &of_part, &own, closures);
+            let found = part.surrogate.values(row, &of_part, &own.points(), closures);
             for (&index, found) in indices.iter().zip(found.chunks_exact(samples.len().max(1))) {
                 values[index * samples.len()..][..samples.len()].copy_from_slice(found);
             }

@@ -151,14 +151,18 @@ impl Laws {
 
     /// The sample with these independent normal scores.
     pub fn of_scores(&self, scores: &[f64]) -> Vec<f64> {
-        let mut scores = scores.to_vec();
-        self.copula.correlate_scores(&mut scores);
-        let value = |(index, score): (usize, &f64)| {
-            self.quantiles[index].of_score(*score).clamp(self.least[index], self.most[index])
-        };
-        let mut sample: Vec<f64> = scores.iter().enumerate().map(value).collect();
-        self.zones.iter().for_each(|zone| zone.place(&mut sample));
+        let mut sample = scores.to_vec();
+        self.replace_scores(&mut sample);
         sample
+    }
+
+    /// Replaces independent normal scores with the sample that has them.
+    pub fn replace_scores(&self, sample: &mut [f64]) {
+        self.copula.correlate_scores(sample);
+        for (index, value) in sample.iter_mut().enumerate() {
+            *value = self.quantiles[index].of_score(*value).clamp(self.least[index], self.most[index]);
+        }
+        self.zones.iter().for_each(|zone| zone.place(sample));
     }
 
     /// As they are printed.

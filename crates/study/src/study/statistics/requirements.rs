@@ -6,6 +6,7 @@ use rayon::prelude::*;
 use super::rows::Rows;
 use super::tuning::TUNING;
 use crate::model::{Analysis, Requirement};
+use crate::numerics::PointSet;
 use crate::numerics::statistics::{REPLICATES, RareShare, normal_quantile, rare_share, replicate, share_interval};
 use crate::results::YieldSummary;
 use crate::study::reduced;
@@ -195,24 +196,26 @@ impl<'a> Together<'a> {
     /// The share that fails, by samples drawn near the failures.
     fn rare(&self, margins: &reduced::Margins) -> Option<RareShare> {
         let laws = self.rows.laws;
+        let axes: Vec<usize> = (0..laws.dimension()).collect();
         // The least of all, each in its own scale, with errors that help, none, and errors that harm.
         let some = |points: &[Vec<f64>]| -> Vec<[f64; 3]> {
             if self.rows.go_on().is_err() {
                 // Unknown, at once: the search then ends soon.
                 return vec![[f64::NAN; 3]; points.len()];
             }
-            let samples: Vec<Vec<f64>> = points.iter().map(|scores| laws.of_scores(scores)).collect();
-            let found = margins.values(&samples);
+            let mut samples = PointSet::of_coordinates(points, &axes);
+            samples.for_each_mut(|sample| laws.replace_scores(sample));
+            let found = margins.values(&samples.points());
             let of_sample = |sample: usize| {
                 [-1.0, 0.0, 1.0].map(|sign| {
                     let slack = |index: usize| {
-                        (found[index * samples.len() + sample] - sign * self.errors[index]) / self.scales[index]
+                        (found[index * points.len() + sample] - sign * self.errors[index]) / self.scales[index]
                     };
                     let less = |a: f64, b: f64| if b < a || b.is_nan() { b } else { a };
                     (0..self.errors.len()).map(slack).fold(f64::INFINITY, less)
                 })
             };
-            (0..samples.len()).map(of_sample).collect()
+            (0..points.len()).map(of_sample).collect()
         };
         let at_once = (TUNING.most_margins_at_once / self.errors.len()).max(1);
         rare_share(&self.starts(), &|points: &[Vec<f64>]| points.chunks(at_once).flat_map(some).collect())
