@@ -223,9 +223,9 @@ fn a_corner_is_grazed() {
 space: spatial
 bodies: {{ body: {{ mass: 1, inertia: [1e3, 1e3, 1e3] }} }}
 effects: {{ it: {{ contact: {{ between: [ground, body], block: [0.4, 0.6, 0.4], rounding: 5 mm, {shape}, impact: {{ stiffness: 1e5, exponent: 1 }} }} }} }}
-initial: {{ body.x: -0.5, body.y: {}, body.z: 0.05, body.vx: 3 }}
+initial: {{ body.x: -0.35, body.y: {}, body.z: 0.05, body.vx: 3 }}
 outputs: {{ vx: body.vx, vy: body.vy, vz: body.vz }}
-simulation: {{ duration: 0.4, step: 2e-5, output_step: 0.01 }}
+simulation: {{ duration: 0.24, step: 2e-5, output_step: 0.01 }}
 ",
                 y - depth
             )))
