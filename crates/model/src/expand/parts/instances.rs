@@ -252,16 +252,15 @@ impl Writer<'_, '_> {
     fn check_names(&mut self, instances: &[Entry]) {
         let sections = ["bodies", "joints", "effects", "states", "parameters"];
         let definitions = self.definitions.values().map(AsRef::as_ref);
-        let entries = sections.iter().flat_map(|section| self.entries(section)).chain(definitions);
-        let mut first: HashMap<&str, &Span> = HashMap::new();
-        for entry in entries {
-            first.entry(&entry.key).or_insert(&entry.key_span);
+        let mut first: HashMap<&str, Option<Span>> = instances.iter().map(|own| (own.key.as_str(), None)).collect();
+        for entry in sections.iter().flat_map(|section| self.entries(section)).chain(definitions) {
+            if let Some(first) = first.get_mut(entry.key.as_str()) {
+                first.get_or_insert_with(|| entry.key_span.clone());
+            }
         }
-        let known: Vec<Option<Span>> =
-            instances.iter().map(|instance| first.get(instance.key.as_str()).copied().cloned()).collect();
-        for (instance, known) in instances.iter().zip(known) {
-            if let Some(known) = known {
-                self.twice(&instance.key, &instance.key_span, &known);
+        for instance in instances {
+            if let Some(Some(first)) = first.get(instance.key.as_str()) {
+                self.twice(&instance.key, &instance.key_span, first);
             }
         }
         for section in ["parameters", "bodies", "joints", "effects", "states", "initial", "guess"] {

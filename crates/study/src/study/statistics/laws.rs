@@ -135,16 +135,12 @@ impl Laws {
     pub fn samples(&self, number: usize, count: usize) -> Vec<f64> {
         let mut samples = replicate(number, self.dimension(), count);
         for sample in samples.chunks_exact_mut(self.dimension()) {
-            let is_correlated = !self.copula.is_independent();
-            if is_correlated {
+            if self.copula.is_independent() {
+                self.replace(sample, Quantiles::of_share);
+            } else {
                 sample.iter_mut().for_each(|share| *share = normal_quantile(*share));
-                self.copula.correlate_scores(sample);
+                self.replace_scores(sample);
             }
-            for (value, (index, quantiles)) in sample.iter_mut().zip(self.quantiles.iter().enumerate()) {
-                let found = if is_correlated { quantiles.of_score(*value) } else { quantiles.of_share(*value) };
-                *value = found.clamp(self.least[index], self.most[index]);
-            }
-            self.zones.iter().for_each(|zone| zone.place(sample));
         }
         samples
     }
@@ -159,8 +155,13 @@ impl Laws {
     /// Replaces independent normal scores with the sample that has them.
     pub fn replace_scores(&self, sample: &mut [f64]) {
         self.copula.correlate_scores(sample);
-        for (index, value) in sample.iter_mut().enumerate() {
-            *value = self.quantiles[index].of_score(*value).clamp(self.least[index], self.most[index]);
+        self.replace(sample, Quantiles::of_score);
+    }
+
+    /// Replaces numbers of the parameters with their values, within the box that samples are drawn from.
+    fn replace(&self, sample: &mut [f64], value: impl Fn(&Quantiles, f64) -> f64) {
+        for (index, (number, quantiles)) in sample.iter_mut().zip(&self.quantiles).enumerate() {
+            *number = value(quantiles, *number).clamp(self.least[index], self.most[index]);
         }
         self.zones.iter().for_each(|zone| zone.place(sample));
     }

@@ -196,14 +196,14 @@ impl<'a> Together<'a> {
     /// The share that fails, by samples drawn near the failures.
     fn rare(&self, margins: &reduced::Margins) -> Option<RareShare> {
         let laws = self.rows.laws;
-        let axes: Vec<usize> = (0..laws.dimension()).collect();
         // The least of all, each in its own scale, with errors that help, none, and errors that harm.
         let some = |points: &[Vec<f64>]| -> Vec<[f64; 3]> {
             if self.rows.go_on().is_err() {
                 // Unknown, at once: the search then ends soon.
                 return vec![[f64::NAN; 3]; points.len()];
             }
-            let mut samples = PointSet::of_coordinates(points, &axes);
+            let scores = points.iter().map(Vec::as_slice);
+            let mut samples = PointSet::mapped(scores, laws.dimension(), |scores, axis| scores[axis]);
             samples.for_each_mut(|sample| laws.replace_scores(sample));
             let found = margins.values(&samples.points());
             let of_sample = |sample: usize| {
