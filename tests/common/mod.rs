@@ -2,6 +2,7 @@
 
 pub mod adams;
 pub mod closed_forms;
+pub mod dop853;
 pub mod dormand_prince;
 pub mod finite_elements;
 pub mod measured;

@@ -6,8 +6,8 @@ use mbint::results::{Bounds, Method};
 
 use super::certify_motion::{box_of, certify, excess};
 use crate::common::Subject;
+use crate::common::dop853::solve;
 use crate::common::*;
-use crate::dop853::solve;
 
 /// Rounding of closed forms.
 const ROUNDING: f64 = 1e-15;

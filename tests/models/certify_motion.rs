@@ -7,9 +7,9 @@ use mbint::results::{Bounds, Method};
 use rayon::prelude::*;
 
 use crate::common::Subject;
+use crate::common::dop853::solve;
 use crate::common::measured::Case;
 use crate::common::*;
-use crate::dop853::solve;
 
 /// Error of the reference: DOP853's tolerance, gathered over the steps.
 const REFERENCE: f64 = 1e-11;

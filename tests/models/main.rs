@@ -11,9 +11,6 @@
 #[allow(dead_code, reason = "shared with the tests of elements")]
 mod common;
 
-#[path = "../common/dop853.rs"]
-mod dop853;
-
 mod accelerations;
 mod assembly;
 mod attained;
