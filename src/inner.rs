@@ -37,7 +37,7 @@ pub mod model {
 }
 
 pub mod numerics {
-    pub use crate::numerics::Sample;
+    pub use crate::numerics::{PointSet, Sample};
 }
 
 pub mod reduce {

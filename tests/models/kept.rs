@@ -1,5 +1,6 @@
 //! Surrogates stored after a run: their values anywhere in the box, against simulations there.
 
+use mbint::inner::numerics::PointSet;
 use mbint::inner::study::{self, Kept, Options};
 
 use crate::common::{Subject, read, run};
@@ -55,7 +56,7 @@ fn agrees(text: &str, tolerance: f64) {
         nominal.iter().fold(0.0_f64, |most, value| most.max((value - nominal[0]).abs()))
     };
     for (row, time) in kept.times().iter().enumerate() {
-        let values = evaluator.values(row, &every, &SAMPLES);
+        let values = evaluator.values(row, &every, PointSet::of(&SAMPLES).points());
         for output in every {
             for (index, truth) in courses[output].iter().enumerate() {
                 let (found, truth) = (values[output * SAMPLES.len() + index], truth[row]);
@@ -85,7 +86,12 @@ fn the_same_bits_for_any_number_of_threads() {
         let kept = kept(&description, threads);
         let samples: Vec<[f64; 3]> =
             (0..3000).map(|i| [0.1176 + 1.6e-6 * f64::from(i), -0.6, 0.01 + 1e-6 * f64::from(i)]).collect();
-        kept.evaluator().unwrap().values(5, &[2, 3], &samples).into_iter().map(f64::to_bits).collect()
+        kept.evaluator()
+            .unwrap()
+            .values(5, &[2, 3], PointSet::of(&samples).points())
+            .into_iter()
+            .map(f64::to_bits)
+            .collect()
     };
     assert_eq!(bits(1), bits(2));
 }

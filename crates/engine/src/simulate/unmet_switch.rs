@@ -19,7 +19,9 @@ use super::simulator::Simulator;
 use super::step::Counters;
 use super::tuning::TUNING;
 use crate::compile::{SwitchProgram, Tapes};
-use crate::numerics::{Extent, Lattices, ParameterBox, SparseWork, Surrogate, SurrogateWork, extremes, spread};
+use crate::numerics::{
+    Extent, Lattices, ParameterBox, PointSet, SparseWork, Surrogate, SurrogateWork, extremes, spread,
+};
 
 /// Distances by which a switch went below and above zero since the row before.
 type Depths = [f64; 2];
@@ -281,7 +283,7 @@ impl Between<'_> {
         let closer: Vec<usize> = near.iter().map(|&(index, _)| switches[index]).collect();
         let least: Vec<f64> = near.iter().map(|(_, size)| TUNING.switch_zero * size).collect();
         let found =
-            extremes(&Lattices::default(), &intervals, &least, |points| self.values(points, times, motions, &closer));
+            extremes(&Lattices::default(), &intervals, &least, &|points| self.values(points, times, motions, &closer));
         let suspect = |(&(index, size), found): (&(usize, f64), &Extent)| {
             let (switch, side) = one_sided[index];
             let beyond = if side == 0 { -found.range.lower } else { found.range.upper };
@@ -300,9 +302,9 @@ impl Between<'_> {
     fn values(&self, points: &[Vec<f64>], times: [f64; 2], motions: [&[f64]; 2], switches: &[usize]) -> Vec<f64> {
         let (n, k) = (self.simulator.program.scale.len(), self.domain.dimension());
         let mut at_rows = [vec![0.0; 2 * n * points.len()], vec![0.0; 2 * n * points.len()]];
-        let xi: Vec<&[f64]> = points.iter().map(|point| &point[..k]).collect();
+        let xi = PointSet::of(points);
         for (at_row, motion) in at_rows.iter_mut().zip(motions) {
-            self.surrogate.basis().values(&xi, motion, at_row, &mut SparseWork::default());
+            self.surrogate.basis().values(xi.points(), motion, at_row, &mut SparseWork::default());
         }
         let layout = &self.program.layout;
         let mut tile = Tile::new(TUNING.switch_width, self.program.registers(), self.program.constants());

@@ -2,7 +2,7 @@
 
 use super::closure::Closure;
 use super::tuning::TUNING;
-use crate::numerics::{ParameterBox, Phase, SparseBasis, SparseWork};
+use crate::numerics::{ParameterBox, Phase, Points, SparseBasis, SparseWork};
 
 /// Moves of motions, which show their effects on outputs.
 #[derive(Clone, Debug, Default)]
@@ -45,7 +45,7 @@ pub(super) struct Expansion<'r> {
 
 impl Expansion<'_> {
     /// Every output at some ξ with the motion moved in some ways, output by output, way by way, point by point.
-    pub fn evaluate_moved<P: AsRef<[f64]>>(&self, points: &[P], ways: &[Moves]) -> Vec<f64> {
+    pub fn evaluate_moved(&self, points: Points, ways: &[Moves]) -> Vec<f64> {
         let n = self.extent.len() / 2;
         let needs_velocities = self.closure.needs_velocities() || ways.iter().any(|moves| !moves.ahead.is_empty());
         let mut expanded = vec![0.0; if needs_velocities { 2 * n } else { n } * points.len()];
@@ -69,12 +69,11 @@ impl Expansion<'_> {
                 values.iter_mut().for_each(|value| *value = value.clamp(low, high));
             }
         }
-        let all: Vec<&[f64]> = ways.iter().flat_map(|_| points.iter().map(AsRef::as_ref)).collect();
-        self.close(&all, motion)
+        self.close(points, ways.len(), motion)
     }
 
     /// The first lines of the motion, as far as `motion` has room for them.
-    pub fn expand<P: AsRef<[f64]>>(&self, points: &[P], motion: &mut [f64]) {
+    pub fn expand(&self, points: Points, motion: &mut [f64]) {
         let lines = motion.len() / points.len().max(1);
         let coefficients = &self.coefficients[..lines * self.basis.len()];
         self.basis.values(points, coefficients, motion, &mut SparseWork::default());
@@ -90,22 +89,14 @@ impl Expansion<'_> {
         }
     }
 
-    /// Every output as it follows from the motion at some ξ: 2n lines of points.
-    pub fn close<P: AsRef<[f64]>>(&self, points: &[P], motion: Vec<f64>) -> Vec<f64> {
-        let k = self.domain.dimension();
-        let mut parameters = Vec::with_capacity(k * points.len());
-        for parameter in 0..k {
-            let at = |point: &P| {
-                let xi = point.as_ref()[parameter];
-                // Coordinates go on beyond the box, and so do parameters: with those of its end, outputs would have a
-                // kink.
-                match xi.abs() <= 1.0 + TUNING.beyond_box {
-                    true => self.domain.value(parameter, xi),
-                    false => self.domain.midpoint(parameter) + self.domain.half_width(parameter) * xi,
-                }
-            };
-            parameters.extend(points.iter().map(at));
-        }
-        self.closure.outputs(self.time, points.len(), parameters, motion)
+    /// Every output as it follows from `ways` motions at some ξ: 2n lines of points, way by way.
+    pub fn close(&self, points: Points, ways: usize, motion: Vec<f64>) -> Vec<f64> {
+        // Coordinates go on beyond the box, and so do parameters: with those of its end, outputs would have a kink.
+        let values = self.domain.continued(points, TUNING.beyond_box);
+        let parameters = match ways {
+            1 => values,
+            _ => values.chunks_exact(points.len().max(1)).flat_map(|line| line.repeat(ways)).collect(),
+        };
+        self.closure.outputs(self.time, ways * points.len(), parameters, motion)
     }
 }

@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 use super::closure::Closure;
 use super::expansion::{Expansion, Moves};
-use crate::numerics::{ParameterBox, PointSet, SparseBasis, SparseWork};
+use crate::numerics::{ParameterBox, Points, SparseBasis, SparseWork};
 
 /// A surrogate over the whole box.
 #[derive(Clone, Debug, Default)]
@@ -29,7 +29,7 @@ pub(super) trait CutSurrogate: Debug + Send + Sync {
 
     /// Some outputs in one row at samples of the box (values of the parameters in their units), output by output; NaN
     /// where the closure has no solution.
-    fn values(&self, row: usize, outputs: &[usize], samples: &[&[f64]], closure: &dyn Closure) -> Vec<f64>;
+    fn values(&self, row: usize, outputs: &[usize], samples: Points, closure: &dyn Closure) -> Vec<f64>;
 }
 
 /// A row of motions that are cut at events.
@@ -187,41 +187,43 @@ impl KeptSurrogate {
 
     /// Values of the polynomials through outputs' own samples in one row, at samples of the box, output by output.
     /// `None` if the box was split.
-    pub fn own_values<P: AsRef<[f64]>>(&self, row: usize, outputs: &[usize], samples: &[P]) -> Option<Vec<f64>> {
+    pub fn own_values(&self, row: usize, outputs: &[usize], samples: Points) -> Option<Vec<f64>> {
         let [part] = self.boxes.as_slice() else { return None };
-        let points = part.points(samples.iter().map(AsRef::as_ref));
+        let points = part.domain.xi_of(samples);
         let terms = part.basis.len();
         let coefficients: Vec<f64> =
             outputs.iter().flat_map(|&output| part.rows[row].of_output(output, terms).to_vec()).collect();
         let mut values = vec![0.0; outputs.len() * samples.len()];
-        part.basis.values(&points.points(), &coefficients, &mut values, &mut SparseWork::default());
+        part.basis.values(points.points(), &coefficients, &mut values, &mut SparseWork::default());
         Some(values)
     }
 
     /// Outputs in one row at samples of the box (values of the parameters in their units), output by output; NaN if
     /// a closure has no solution. `closures` has one for every choice of [`independent`](Self::independent).
-    pub fn values<'c, P: AsRef<[f64]>>(
+    pub fn values<'c>(
         &self,
         row: usize,
         outputs: &[usize],
-        samples: &[P],
+        samples: Points,
         closures: &'c [Box<dyn Closure + 'c>],
     ) -> Vec<f64> {
         if let Some(pieces) = &self.pieces {
             let Some(closure) = closures.iter().find(|own| own.independent() == pieces.rows()[row].independent) else {
                 return vec![f64::NAN; outputs.len() * samples.len()];
             };
-            let samples: Vec<&[f64]> = samples.iter().map(AsRef::as_ref).collect();
-            return pieces.values(row, outputs, &samples, closure.as_ref());
+            return pieces.values(row, outputs, samples, closure.as_ref());
+        }
+        if let [part] = self.boxes.as_slice() {
+            return part.values(row, outputs, part.domain.xi_of(samples).points(), closures);
         }
         let mut values = vec![f64::NAN; outputs.len() * samples.len()];
         let mut left: Vec<usize> = (0..samples.len()).collect();
         for part in &self.boxes {
-            let holds = |index: &usize| self.boxes.len() == 1 || part.contains(samples[*index].as_ref());
+            let holds = |index: &usize| part.domain.contains(samples.point(*index));
             let (inside, outside): (Vec<usize>, Vec<usize>) = left.into_iter().partition(holds);
             left = outside;
-            let points = part.points(inside.iter().map(|&index| samples[index].as_ref()));
-            let found = part.values(row, outputs, &points.points(), closures);
+            let points = part.domain.xi_of(samples.chosen(&inside).points());
+            let found = part.values(row, outputs, points.points(), closures);
             for (of_output, found) in
                 values.chunks_exact_mut(samples.len().max(1)).zip(found.chunks_exact(inside.len().max(1)))
             {
@@ -233,27 +235,11 @@ impl KeptSurrogate {
 }
 
 impl KeptBox {
-    fn contains(&self, sample: &[f64]) -> bool {
-        let ends = self.domain.lower.iter().zip(&self.domain.upper);
-        sample.iter().zip(ends).all(|(value, (lower, upper))| (lower..=upper).contains(&value))
-    }
-
-    /// ξ of samples; 0 along parameters without width.
-    fn points<'s>(&self, samples: impl ExactSizeIterator<Item = &'s [f64]>) -> PointSet {
-        let of = |axis: usize| (self.domain.midpoint(axis), self.domain.half_width(axis));
-        let axes: Vec<(f64, f64)> = (0..self.domain.dimension()).map(of).collect();
-        let along = |sample: &[f64], axis: usize| match axes[axis] {
-            (middle, half) if half > 0.0 => (sample[axis] - middle) / half,
-            _ => 0.0,
-        };
-        PointSet::mapped(samples, axes.len(), along)
-    }
-
     fn values<'c>(
         &self,
         row: usize,
         outputs: &[usize],
-        points: &[&[f64]],
+        points: Points,
         closures: &'c [Box<dyn Closure + 'c>],
     ) -> Vec<f64> {
         let row = &self.rows[row];

@@ -2,14 +2,15 @@
 //! stops short of it.
 
 use super::extent::Extent;
+use super::extremes::ValuesAt;
 use super::tuning::TUNING;
 
 /// Moves ends that stand short of a jump to its brink: along each axis, the first drop next to the end is halved until
 /// nothing lies between its two sides. `evaluate` gives all functions at some ξ, function by function.
 ///
 /// Over several parameters the brink may rise along itself; an end that was moved may be off by as much again.
-pub fn to_brinks(extents: &mut [Extent], evaluate: impl Fn(&[Vec<f64>]) -> Vec<f64>) {
-    let mut drops = drops(extents, &evaluate);
+pub fn to_brinks(extents: &mut [Extent], evaluate: &ValuesAt) {
+    let mut drops = drops(extents, evaluate);
     for _ in 0..TUNING.halvings_of_brink {
         drops.retain(|drop| !drop.is_halved());
         if drops.is_empty() {
@@ -71,7 +72,7 @@ impl Drop {
 }
 
 /// Finds the first drop next to each end, along each axis, either way.
-fn drops(extents: &mut [Extent], evaluate: &impl Fn(&[Vec<f64>]) -> Vec<f64>) -> Vec<Drop> {
+fn drops(extents: &mut [Extent], evaluate: &ValuesAt) -> Vec<Drop> {
     let mut drops = Vec::new();
     let mut points = Vec::new();
     // Number of the points along each line.
@@ -127,8 +128,8 @@ mod tests {
     fn a_sawtooth_ends_at_its_teeth() {
         let saw = |xi: &[f64]| (3.0 + 1.3 * xi[0] + 0.4 * xi[1]).rem_euclid(1.0);
         let evaluate = |points: &[Vec<f64>]| points.iter().map(|xi| saw(xi)).collect::<Vec<f64>>();
-        let mut found = extremes(&Lattices::default(), &[8, 8], &[0.0], evaluate);
-        to_brinks(&mut found, evaluate);
+        let mut found = extremes(&Lattices::default(), &[8, 8], &[0.0], &evaluate);
+        to_brinks(&mut found, &evaluate);
         assert!(found[0].range.lower < 1e-15 && found[0].range.upper > 1.0 - 1e-15, "{found:?}");
     }
 
@@ -138,9 +139,9 @@ mod tests {
         let evaluate = |points: &[Vec<f64>]| -> Vec<f64> {
             points.iter().map(|xi| (2.0 * xi[0]).sin()).chain(points.iter().map(|_| 3.0)).collect()
         };
-        let found = extremes(&Lattices::default(), &[16], &[0.0; 2], evaluate);
+        let found = extremes(&Lattices::default(), &[16], &[0.0; 2], &evaluate);
         let mut moved = found.clone();
-        to_brinks(&mut moved, evaluate);
+        to_brinks(&mut moved, &evaluate);
         assert!((moved[0].range.upper - 1.0).abs() < 1e-12 && (moved[0].range.lower + 1.0).abs() < 1e-12);
         assert_eq!(moved[1], found[1]);
     }

@@ -80,7 +80,7 @@ impl Tail {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::numerics::{SparseGrid, SparseWork, Surrogate, SurrogateWork};
+    use crate::numerics::{PointSet, SparseGrid, SparseWork, Surrogate, SurrogateWork};
 
     /// The stated error, and the largest true error.
     fn told(n: usize, f: impl Fn(f64) -> f64) -> (f64, f64) {
@@ -89,7 +89,7 @@ mod tests {
         let c = surrogate.coefficients(&values, &mut SurrogateWork::default());
         let xi: Vec<[f64; 1]> = (0..=4000).map(|i| [f64::from(i) / 2000.0 - 1.0]).collect();
         let mut found = vec![0.0; xi.len()];
-        surrogate.basis().values(&xi, &c, &mut found, &mut SparseWork::default());
+        surrogate.basis().values(PointSet::of(&xi).points(), &c, &mut found, &mut SparseWork::default());
         let error = xi.iter().zip(&found).map(|(xi, found)| (found - f(xi[0])).abs()).fold(0.0, f64::max);
         (truncation(surrogate.basis(), &c), error)
     }
@@ -115,7 +115,7 @@ mod tests {
         let at = |i: usize| i as f64 / 50.0 - 1.0;
         let xi: Vec<[f64; 2]> = (0..=100).flat_map(|i| (0..=100).map(move |j| [at(i), at(j)])).collect();
         let mut found = vec![0.0; xi.len()];
-        surrogate.basis().values(&xi, &c, &mut found, &mut SparseWork::default());
+        surrogate.basis().values(PointSet::of(&xi).points(), &c, &mut found, &mut SparseWork::default());
         let error = xi.iter().zip(&found).map(|(xi, found)| (found - f(xi[0], xi[1])).abs()).fold(0.0, f64::max);
         (truncation(surrogate.basis(), &c), error)
     }

@@ -6,6 +6,8 @@ use std::ops::Deref;
 
 use serde::{Deserialize, Serialize};
 
+use super::point_set::{PointSet, Points};
+
 /// Values of the k parameters in their units, for one simulation.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Sample(Vec<f64>);
@@ -95,15 +97,34 @@ impl ParameterBox {
 
     /// ξ of a sample; 0 along parameters without width.
     pub fn xi(&self, sample: &[f64]) -> Vec<f64> {
-        let along = |axis: usize| match self.half_width(axis) {
-            half if half > 0.0 => (sample[axis] - self.midpoint(axis)) / half,
-            _ => 0.0,
-        };
-        (0..sample.len()).map(along).collect()
+        (0..sample.len()).map(|axis| self.axis(axis).xi(sample[axis])).collect()
+    }
+
+    /// ξ of many samples.
+    pub fn xi_of(&self, samples: Points) -> PointSet {
+        let axes: Vec<ParameterAxis> = (0..self.dimension()).map(|axis| self.axis(axis)).collect();
+        PointSet::mapped(samples.iter(), axes.len(), |sample, axis| axes[axis].xi(sample[axis]))
+    }
+
+    fn axis(&self, parameter: usize) -> ParameterAxis {
+        ParameterAxis { middle: self.midpoint(parameter), half: self.half_width(parameter) }
+    }
+
+    /// Values of the parameters at many ξ, parameter by parameter; where ξ is outside of \[−1, 1\] by more than
+    /// `beyond`, outside of the box as well.
+    pub fn continued(&self, xi: Points, beyond: f64) -> Vec<f64> {
+        let mut values = Vec::with_capacity(self.dimension() * xi.len());
+        for parameter in 0..self.dimension() {
+            values.extend(xi.iter().map(|point| match point[parameter] {
+                xi if xi.abs() <= 1.0 + beyond => self.value(parameter, xi),
+                xi => self.midpoint(parameter) + self.half_width(parameter) * xi,
+            }));
+        }
+        values
     }
 
     /// Whether a sample lies in the box.
-    pub fn contains(&self, sample: &Sample) -> bool {
+    pub fn contains(&self, sample: &[f64]) -> bool {
         let ends = self.lower.iter().zip(&self.upper);
         sample.iter().zip(ends).all(|(value, (lower, upper))| (lower..=upper).contains(&value))
     }
@@ -120,6 +141,19 @@ impl ParameterBox {
         halves[0].upper[axis] = middle;
         halves[1].lower[axis] = middle;
         halves
+    }
+}
+
+/// A parameter's interval.
+struct ParameterAxis {
+    middle: f64,
+    /// Half the width.
+    half: f64,
+}
+
+impl ParameterAxis {
+    fn xi(&self, value: f64) -> f64 {
+        if self.half > 0.0 { (value - self.middle) / self.half } else { 0.0 }
     }
 }
 
@@ -150,7 +184,7 @@ mod tests {
             prop_assert_eq!(domain.value(0, -1.0), lower);
             prop_assert_eq!(domain.value(0, 1.0), upper);
             prop_assert!((lower..=upper).contains(&domain.value(0, xi)));
-            prop_assert!(domain.contains(&domain.sample(&[xi])) && !domain.contains(&vec![upper.next_up()].into()));
+            prop_assert!(domain.contains(&domain.sample(&[xi])) && !domain.contains(&[upper.next_up()]));
             let back = domain.xi(&domain.sample(&[xi]))[0];
             prop_assert!((back - xi).abs() * domain.half_width(0) <= 1e-12 * (1.0 + a.abs().max(b.abs())));
             let certain = ParameterBox { nominal: vec![a].into(), lower: vec![a], upper: vec![a], ..ParameterBox::default() };

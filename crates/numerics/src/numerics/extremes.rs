@@ -16,18 +16,16 @@ use super::peak::Peak;
 use super::range::Range;
 use super::tuning::TUNING;
 
+/// Values of some functions at points: function by function, point by point.
+pub type ValuesAt<'f> = dyn Fn(&[Vec<f64>]) -> Vec<f64> + 'f;
+
 /// The least and the largest value are sought.
 const SIGNS: [f64; 2] = [-1.0, 1.0];
 
 /// Extremes of functions over [−1, 1]^k at once: `evaluate` gives their values at some ξ, function by function. The
 /// first lattice, of `lattices`, has `intervals` ≥ 2 along each axis. Differences of at most `least`, a number for each
 /// function and at least its rounding, are not searched for. Unknown if a value on a lattice is NaN.
-pub fn extremes(
-    lattices: &Lattices,
-    intervals: &[usize],
-    least: &[f64],
-    evaluate: impl Fn(&[Vec<f64>]) -> Vec<f64>,
-) -> Vec<Extent> {
+pub fn extremes(lattices: &Lattices, intervals: &[usize], least: &[f64], evaluate: &ValuesAt) -> Vec<Extent> {
     let mut intervals = intervals.to_vec();
     loop {
         let checked = lattices.of(&intervals);
@@ -44,7 +42,7 @@ pub fn extremes(
         let search = |(output, line): (usize, &(&[f64], &[f64]))| Search::new(output, least[output], lattice, line.0);
         let mut searches: Vec<Search> = lines.iter().enumerate().map(search).collect();
         for _ in 0..TUNING.more_candidates {
-            climb(&mut searches.iter_mut().flat_map(|search| &mut search.ends).collect::<Vec<_>>(), &evaluate);
+            climb(&mut searches.iter_mut().flat_map(|search| &mut search.ends).collect::<Vec<_>>(), evaluate);
             let mut refines = false;
             searches.iter_mut().for_each(|search| refines |= search.refine_more(lattice));
             if !refines {
@@ -97,16 +95,16 @@ fn finer(lattice: &Lattice, intervals: &[usize], lines: &[(&[f64], &[f64])], lea
 }
 
 /// Extremes of other functions, not far from those of similar ones.
-pub fn extremes_near(known: &[Extent], evaluate: impl Fn(&[Vec<f64>]) -> Vec<f64>) -> Vec<Extent> {
+pub fn extremes_near(known: &[Extent], evaluate: &ValuesAt) -> Vec<Extent> {
     search_near(known, false, evaluate)
 }
 
 /// Extremes of functions near known places. Extremes known at corners of the box are believed.
-pub fn extremes_from(known: &[Extent], evaluate: impl Fn(&[Vec<f64>]) -> Vec<f64>) -> Vec<Extent> {
+pub fn extremes_from(known: &[Extent], evaluate: &ValuesAt) -> Vec<Extent> {
     search_near(known, true, evaluate)
 }
 
-fn search_near(known: &[Extent], corners_stay: bool, evaluate: impl Fn(&[Vec<f64>]) -> Vec<f64>) -> Vec<Extent> {
+fn search_near(known: &[Extent], corners_stay: bool, evaluate: &ValuesAt) -> Vec<Extent> {
     let near = |(output, extent): (usize, &Extent)| {
         let width = extent.range.width();
         let settled = TUNING.settled_end * width;
@@ -122,7 +120,7 @@ fn search_near(known: &[Extent], corners_stay: bool, evaluate: impl Fn(&[Vec<f64
         Search { ends: [0, 1].map(end).into(), settled, output, omitted: [Vec::new(), Vec::new()] }
     };
     let mut searches: Vec<Search> = known.iter().enumerate().map(near).collect();
-    climb(&mut searches.iter_mut().flat_map(|search| &mut search.ends).collect::<Vec<_>>(), &evaluate);
+    climb(&mut searches.iter_mut().flat_map(|search| &mut search.ends).collect::<Vec<_>>(), evaluate);
     let dimension = known.first().map_or(0, |extent| extent.places[0].len());
     searches.iter().map(|search| search.extent(dimension)).collect()
 }
@@ -139,7 +137,7 @@ struct Search {
 }
 
 /// Searches until each end is found, or cannot exceed the best by a difference that matters.
-fn climb(ends: &mut [&mut End], evaluate: &impl Fn(&[Vec<f64>]) -> Vec<f64>) {
+fn climb(ends: &mut [&mut End], evaluate: &ValuesAt) {
     let mut tops: FxHashMap<(usize, bool), f64> = FxHashMap::default();
     for _ in 0..TUNING.steps_to_end {
         let searched: Vec<usize> = (0..ends.len()).filter(|&end| !ends[end].found).collect();

@@ -195,6 +195,7 @@ fn grid(k: usize, terms: &[Term]) -> SparseGrid {
 
 #[cfg(test)]
 mod tests {
+    use super::super::point_set::PointSet;
     use super::super::samples::spread;
     use super::super::sparse_basis::SparseWork;
     use super::*;
@@ -217,7 +218,7 @@ mod tests {
         let coefficients = fit.coefficients(known.iter().map(|(value, slopes)| (*value, slopes.as_slice())));
         let corners = [vec![1.0; 8], vec![-0.5; 8]];
         let mut found = [0.0; 2];
-        fit.basis().values(&corners, &coefficients, &mut found, &mut SparseWork::default());
+        fit.basis().values(PointSet::of(&corners).points(), &coefficients, &mut found, &mut SparseWork::default());
         for (corner, found) in corners.iter().zip(found) {
             assert!((found - value(corner)).abs() < 1e-6, "{found}");
             assert!((fit.value(&coefficients, corner) - value(corner)).abs() < 1e-6);

@@ -82,7 +82,7 @@ pub use error::{
     time_error, time_error_certified,
 };
 pub use extent::Extent;
-pub use extremes::{extremes, extremes_from, extremes_near};
+pub use extremes::{ValuesAt, extremes, extremes_from, extremes_near};
 pub use functions_of_time::{Cell, FunctionClass, Worst, value};
 pub use gradient_fit::{Derivatives, GradientFit};
 pub use interpolation::{Interpolation, row_weights};
@@ -92,7 +92,7 @@ pub use ledger::Ledger;
 pub use linear_program::best_step;
 pub use observed_order::{Correction, Differences, corrections};
 pub use paving::{Boxes, LeastExcess, Paving, PavingLimits, Tubes, least_excess, pave};
-pub use point_set::PointSet;
+pub use point_set::{PointSet, Points, least_of_lines};
 pub use polynomial_range::{PolynomialRange, RangeKind};
 pub use quadrature::integrals;
 pub use range::{EMPTY, Range, error_of_larger, larger, least, limits, most, union};

@@ -4,6 +4,7 @@
 //! taken about one point of a low-discrepancy sequence and between others; the groups of parameters that are found are
 //! tried at further points.
 
+use super::extremes::ValuesAt;
 use super::samples::spread;
 use super::tuning::TUNING;
 
@@ -60,7 +61,7 @@ impl Separation {
     }
 
     /// The groups of a function with these values at the points; `evaluate` gives its values at others.
-    pub fn of(&self, values: &[f64], evaluate: impl Fn(&[Vec<f64>]) -> Vec<f64>) -> Separated {
+    pub fn of(&self, values: &[f64], evaluate: &ValuesAt) -> Separated {
         let together = Separated { groups: vec![(0..self.dimension).collect()], defect: 0.0 };
         let (least, largest) =
             values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, u), v| (l.min(*v), u.max(*v)));
@@ -96,7 +97,7 @@ impl Separation {
     }
 
     /// Distance of the sum over groups from the function at the tried points.
-    fn defect(&self, groups: &[Vec<usize>], values: &[f64], evaluate: impl Fn(&[Vec<f64>]) -> Vec<f64>) -> f64 {
+    fn defect(&self, groups: &[Vec<usize>], values: &[f64], evaluate: &ValuesAt) -> f64 {
         let parts = self.tried.iter().flat_map(|xi| {
             groups.iter().map(move |group| {
                 let own: Vec<f64> = group.iter().map(|&axis| xi[axis]).collect();
@@ -124,7 +125,7 @@ mod tests {
     fn groups(k: usize, f: impl Fn(&[f64]) -> f64) -> Vec<Vec<usize>> {
         let separation = Separation::new(k);
         let evaluate = |points: &[Vec<f64>]| points.iter().map(|xi| f(xi)).collect::<Vec<f64>>();
-        separation.of(&evaluate(separation.points()), evaluate).groups
+        separation.of(&evaluate(separation.points()), &evaluate).groups
     }
 
     #[test]

@@ -3,6 +3,9 @@
 use rustc_hash::{FxHashMap, FxHashSet};
 use symdiff::{Vectorise, vectorised};
 
+#[cfg(test)]
+use super::point_set::PointSet;
+use super::point_set::Points;
 use super::sparse_grid::SparseGrid;
 use super::tuning::TUNING;
 
@@ -170,10 +173,11 @@ impl SparseBasis {
     }
 
     /// Values of all terms at many points, point by point.
-    pub fn terms<P: AsRef<[f64]>>(&self, points: &[P]) -> Vec<Vec<f64>> {
+    pub fn terms(&self, points: Points) -> Vec<Vec<f64>> {
         let mut work = SparseWork::default();
         let mut all = Vec::with_capacity(points.len());
-        for points in points.chunks(LANES) {
+        for first in (0..points.len()).step_by(LANES) {
+            let points = points.part(first, LANES);
             self.products(points, &mut work);
             all.extend((0..points.len()).map(|lane| work.terms.iter().map(|term| term[lane]).collect::<Vec<f64>>()));
         }
@@ -184,14 +188,14 @@ impl SparseBasis {
     #[cfg(test)]
     pub fn evaluate(&self, coefficients: &[f64], xi: &[f64]) -> f64 {
         let mut value = [0.0];
-        self.values(&[xi], coefficients, &mut value, &mut SparseWork::default());
+        self.values(PointSet::of(&[xi]).points(), coefficients, &mut value, &mut SparseWork::default());
         value[0]
     }
 
     /// Values of many polynomials at many points: `coefficients` are those of one polynomial after the other, and so
     /// are their values in `out`, which has a number for each polynomial and point. Allocates only when `work` is first
     /// used.
-    pub fn values<P: AsRef<[f64]>>(&self, points: &[P], coefficients: &[f64], out: &mut [f64], work: &mut SparseWork) {
+    pub fn values(&self, points: Points, coefficients: &[f64], out: &mut [f64], work: &mut SparseWork) {
         assert_eq!(coefficients.len() * points.len(), out.len() * self.len(), "a value for each polynomial and point");
         vectorised(Evaluation { basis: self, points, coefficients, out, work });
     }
@@ -237,21 +241,22 @@ fn front(degrees: &[u8], orders: &[u8], places: &FxHashMap<&[u8], u32>) -> Vec<V
 }
 
 /// [`SparseBasis::values`], compiled for wide vectors.
-struct Evaluation<'a, P> {
+struct Evaluation<'a> {
     basis: &'a SparseBasis,
-    points: &'a [P],
+    points: Points<'a>,
     coefficients: &'a [f64],
     out: &'a mut [f64],
     work: &'a mut SparseWork,
 }
 
-impl<P: AsRef<[f64]>> Vectorise for Evaluation<'_, P> {
+impl Vectorise for Evaluation<'_> {
     type Output = ();
 
     #[inline(always)]
     fn run(self) {
         let Self { basis, points, coefficients, out, work } = self;
-        for (tile, points) in points.chunks(LANES).enumerate() {
+        for first in (0..points.len()).step_by(LANES) {
+            let points = points.part(first, LANES);
             basis.products(points, work);
             let lines = coefficients.chunks_exact(basis.len()).zip(out.chunks_exact_mut(self.points.len()));
             for (coefficients, out) in lines {
@@ -259,7 +264,7 @@ impl<P: AsRef<[f64]>> Vectorise for Evaluation<'_, P> {
                 for (c, term) in coefficients.iter().zip(&work.terms) {
                     sum.iter_mut().zip(term).for_each(|(sum, term)| *sum += c * term);
                 }
-                out[tile * LANES..][..points.len()].copy_from_slice(&sum[..points.len()]);
+                out[first..][..points.len()].copy_from_slice(&sum[..points.len()]);
             }
         }
     }
@@ -268,7 +273,7 @@ impl<P: AsRef<[f64]>> Vectorise for Evaluation<'_, P> {
 impl SparseBasis {
     /// The terms at up to `LANES` points.
     #[inline(always)]
-    fn products<P: AsRef<[f64]>>(&self, points: &[P], work: &mut SparseWork) {
+    fn products(&self, points: Points, work: &mut SparseWork) {
         self.polynomials(points, &mut work.polynomials);
         work.terms.clear();
         work.terms.push([1.0; LANES]);
@@ -282,10 +287,11 @@ impl SparseBasis {
 
     /// C_j(ξᵢ), j = 0…nᵢ, axis after axis; lanes without a point stay at ξ = 0.
     #[inline(always)]
-    fn polynomials<P: AsRef<[f64]>>(&self, points: &[P], out: &mut Vec<Lanes>) {
+    fn polynomials(&self, points: Points, out: &mut Vec<Lanes>) {
         out.clear();
         for (axis, &n) in self.orders.iter().enumerate() {
-            let x: Lanes = std::array::from_fn(|lane| points.get(lane).map_or(0.0, |xi| xi.as_ref()[axis]));
+            let x: Lanes =
+                std::array::from_fn(|lane| if lane < points.len() { points.coordinate(lane, axis) } else { 0.0 });
             let (mut last, mut this) = (x, [1.0; LANES]);
             for _ in 0..=n {
                 out.push(this);
@@ -319,12 +325,13 @@ mod tests {
         ) {
             let (sparse, tensor) = (SparseBasis::tensor(&[1, 3, 2]), ChebyshevBasis::new(&[1, 3, 2], &[2, 4, 3]));
             let mut values = vec![0.0; 2 * points.len()];
-            sparse.values(&points, &c, &mut values, &mut SparseWork::default());
+            let set = PointSet::of(&points);
+            sparse.values(set.points(), &c, &mut values, &mut SparseWork::default());
             for (line, values) in c.chunks_exact(24).zip(values.chunks_exact(points.len())) {
                 for (xi, value) in points.iter().zip(values) {
                     prop_assert!((value - tensor.evaluate(line, xi)).abs() < 1e-14);
                 }
-                for (terms, value) in sparse.terms(&points).iter().zip(values) {
+                for (terms, value) in sparse.terms(set.points()).iter().zip(values) {
                     prop_assert_eq!(line.iter().zip(terms).map(|(c, term)| c * term).sum::<f64>(), *value);
                 }
             }

@@ -110,6 +110,7 @@ impl Vectorise for Interpolation<'_> {
 #[cfg(test)]
 mod tests {
     use super::super::chebyshev::ChebyshevBasis;
+    use super::super::point_set::PointSet;
     use super::super::samples::TensorGrid;
     use super::*;
     use proptest::prelude::*;
@@ -200,7 +201,7 @@ mod tests {
             transform.coefficients(&values, &mut c, &mut TransformWork::default());
             let nodes: Vec<Vec<f64>> = (0..count).map(|index| grid.sample(index)).collect();
             let mut found = vec![0.0; values.len()];
-            transform.basis().values(&nodes, &c, &mut found, &mut Default::default());
+            transform.basis().values(PointSet::of(&nodes).points(), &c, &mut found, &mut Default::default());
             for (found, value) in found.iter().zip(&values) {
                 prop_assert!((found - value).abs() < 1e-12, "{} {}", found, value);
             }

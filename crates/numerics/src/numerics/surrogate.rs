@@ -89,7 +89,7 @@ impl Surrogate {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::numerics::SparseWork;
+    use crate::numerics::{PointSet, SparseWork};
 
     #[test]
     fn both_surrogates_reproduce_polynomials_of_their_degree() {
@@ -100,7 +100,12 @@ mod tests {
             let coefficients = surrogate.coefficients(&twice, &mut SurrogateWork::default());
             let points = [[0.3, -0.7], [1.0, 1.0]];
             let mut found = [0.0; 4];
-            surrogate.basis().values(&points, &coefficients, &mut found, &mut SparseWork::default());
+            surrogate.basis().values(
+                PointSet::of(&points).points(),
+                &coefficients,
+                &mut found,
+                &mut SparseWork::default(),
+            );
             for (index, xi) in points.iter().enumerate() {
                 assert!((found[index] - f(xi)).abs() < 1e-14 && (found[2 + index] - 2.0 * f(xi)).abs() < 1e-14);
             }

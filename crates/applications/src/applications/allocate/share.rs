@@ -6,7 +6,7 @@ use super::worst::Slack;
 use crate::numerics::statistics::{
     Mixture, REPLICATES, least_at_distance, normal_quantile, shares_below, weighted_quantile,
 };
-use crate::numerics::{Linear, Power};
+use crate::numerics::{Linear, PointSet, Power};
 use crate::study::statistics::Laws;
 use crate::study::statistics::tuning::TUNING as STATISTICS;
 
@@ -24,7 +24,7 @@ pub struct Share<'s> {
 struct Drawn {
     /// The multiples for which the samples were drawn.
     multiples: Vec<f64>,
-    samples: Vec<Vec<f64>>,
+    samples: PointSet,
     weights: Vec<f64>,
 }
 
@@ -33,13 +33,13 @@ impl<'s> Share<'s> {
         Self { surface, laws, interrupted, may_fail, drawn: None }
     }
 
-    /// A sample with these multiples of its distances from the nominal values.
-    fn scaled(&self, multiples: &[f64], sample: &[f64]) -> Vec<f64> {
-        let along = |(axis, value): (usize, &f64)| {
+    /// Slacks, by requirement, of samples with these multiples of their distances from the nominal values.
+    fn scaled<'p>(&self, multiples: &[f64], samples: impl ExactSizeIterator<Item = &'p [f64]>) -> Vec<f64> {
+        let along = |sample: &[f64], axis: usize| {
             let nominal = self.surface.items[axis].nominal;
-            nominal + multiples[axis] * (value - nominal)
+            nominal + multiples[axis] * (sample[axis] - nominal)
         };
-        sample.iter().enumerate().map(along).collect()
+        self.surface.slacks(PointSet::mapped(samples, multiples.len(), along).points())
     }
 
     /// Samples for these multiples, drawn again if those before were for others.
@@ -55,24 +55,20 @@ impl<'s> Share<'s> {
     fn drawn_for(&self, multiples: &[f64]) -> Drawn {
         let k = self.laws.dimension();
         let mixture = if self.may_fail < TUNING.rare { self.mixture(multiples) } else { Mixture::default() };
-        let (mut samples, mut weights) = (Vec::new(), Vec::new());
+        let (mut scores, mut weights) = (Vec::new(), Vec::new());
         for number in 0..REPLICATES {
             let (points, own) = mixture.replicate(number, k, TUNING.points);
-            samples.extend(points.iter().map(|scores| self.laws.of_scores(scores)));
+            scores.extend(points);
             weights.extend(own);
         }
-        Drawn { multiples: multiples.to_vec(), samples, weights }
+        Drawn { multiples: multiples.to_vec(), samples: self.laws.of_scores(&scores), weights }
     }
 
     /// Laws about the points of least remaining margin, by requirement, at the distance that corresponds to `may_fail`;
     /// the least of all first.
     fn mixture(&self, multiples: &[f64]) -> Mixture {
         let distance = -normal_quantile(self.may_fail);
-        let slacks = |points: &[Vec<f64>]| {
-            let samples: Vec<Vec<f64>> =
-                points.iter().map(|scores| self.scaled(multiples, &self.laws.of_scores(scores))).collect();
-            self.surface.slacks(&samples)
-        };
+        let slacks = |points: &[Vec<f64>]| self.scaled(multiples, self.laws.of_scores(points).points().iter());
         let (points, _) = Mixture::default().replicate(0, self.laws.dimension(), TUNING.points);
         let all = slacks(&points);
         let mut places: Vec<(f64, Vec<f64>)> = Vec::new();
@@ -96,8 +92,7 @@ impl<'s> Share<'s> {
     fn slacks(&mut self, multiples: &[f64]) -> (Vec<f64>, Vec<f64>) {
         self.draw(multiples);
         let Some(drawn) = &self.drawn else { return Default::default() };
-        let samples: Vec<Vec<f64>> = drawn.samples.iter().map(|sample| self.scaled(multiples, sample)).collect();
-        (self.surface.slacks(&samples), drawn.weights.clone())
+        (self.scaled(multiples, drawn.samples.points().iter()), drawn.weights.clone())
     }
 
     /// The least slack of each of `n` samples over all requirements.
@@ -121,14 +116,13 @@ impl<'s> Share<'s> {
     /// those of all.
     fn slopes(&self, multiples: &[f64], which: &[usize], pick: impl Fn(&[f64], usize) -> f64) -> Vec<f64> {
         let Some(drawn) = &self.drawn else { return vec![0.0; multiples.len()] };
+        let samples = drawn.samples.points();
         let weight: f64 = which.iter().map(|&index| drawn.weights[index]).sum();
         let slope = |axis: usize| {
             let mean = |sign: f64| {
                 let mut moved = multiples.to_vec();
                 moved[axis] *= 1.0 + sign * TUNING.step_of_difference;
-                let samples: Vec<Vec<f64>> =
-                    which.iter().map(|&index| self.scaled(&moved, &drawn.samples[index])).collect();
-                let slacks = self.surface.slacks(&samples);
+                let slacks = self.scaled(&moved, which.iter().map(|&index| samples.point(index)));
                 let own = |(index, &number): (usize, &usize)| drawn.weights[number] * pick(&slacks, index);
                 which.iter().enumerate().map(own).sum::<f64>() / weight
             };

@@ -1,6 +1,7 @@
 //! Margins of requirements over the widest box, each in multiples of its nominal one.
 
 use crate::methods::MOST_ON_GRIDS;
+use crate::numerics::{PointSet, Points};
 use crate::study::reduced::Margins;
 
 use super::items::Item;
@@ -26,7 +27,7 @@ impl<'k> Surface<'k> {
         let count = kept.count();
         let mut surface = Self { kept, items, count, nominal: vec![1.0; count], reserves: vec![0.0; count] };
         let nominal: Vec<f64> = items.iter().map(|item| item.nominal).collect();
-        surface.nominal = surface.raw(&[nominal]);
+        surface.nominal = surface.raw(PointSet::of(&[nominal]).points());
         if surface.has_errors() {
             surface.reserves = (0..count).map(|index| surface.error(index)).collect();
         }
@@ -55,12 +56,12 @@ impl<'k> Surface<'k> {
     }
 
     /// Margins in their units, requirement by requirement.
-    pub fn raw(&self, samples: &[Vec<f64>]) -> Vec<f64> {
+    pub fn raw(&self, samples: Points) -> Vec<f64> {
         self.kept.values(samples)
     }
 
     /// Remaining margins of samples, in multiples of the nominal ones, requirement by requirement.
-    pub fn slacks(&self, samples: &[Vec<f64>]) -> Vec<f64> {
+    pub fn slacks(&self, samples: Points) -> Vec<f64> {
         let mut slacks = self.raw(samples);
         for (requirement, own) in slacks.chunks_exact_mut(samples.len().max(1)).enumerate() {
             let (reserve, scale) = (self.reserves[requirement], self.scale(requirement));
@@ -71,13 +72,21 @@ impl<'k> Surface<'k> {
         slacks
     }
 
+    /// The same at points ξ of the box with these multiples of the tolerances.
+    pub fn slacks_at<'p>(&self, multiples: &[f64], points: impl ExactSizeIterator<Item = &'p [f64]>) -> Vec<f64> {
+        let along = |xi: &[f64], axis: usize| self.value(axis, multiples[axis], xi[axis]);
+        self.slacks(PointSet::mapped(points, multiples.len(), along).points())
+    }
+
     /// The sample at ξ of the box with these multiples of the tolerances.
     pub fn sample(&self, multiples: &[f64], xi: &[f64]) -> Vec<f64> {
-        let along = |axis: usize| {
-            let item = &self.items[axis];
-            let side = if xi[axis] < 0.0 { item.below } else { item.above };
-            item.nominal + multiples[axis] * xi[axis] * side
-        };
-        (0..xi.len()).map(along).collect()
+        (0..xi.len()).map(|axis| self.value(axis, multiples[axis], xi[axis])).collect()
+    }
+
+    /// A parameter at its ξ with a multiple of its tolerance.
+    fn value(&self, axis: usize, multiple: f64, xi: f64) -> f64 {
+        let item = &self.items[axis];
+        let side = if xi < 0.0 { item.below } else { item.above };
+        item.nominal + multiple * xi * side
     }
 }

@@ -2,7 +2,7 @@
 
 use super::surface::Surface;
 use super::tuning::TUNING;
-use crate::numerics::{ExtremeSearch, Extremes, Linear, Power};
+use crate::numerics::{ExtremeSearch, Extremes, Linear, PointSet, Power};
 
 /// Margins that requirements leave under tolerances.
 pub trait Slack {
@@ -72,7 +72,7 @@ impl<'s> Worst<'s> {
                 samples.push(self.surface.sample(&moved, xi));
             }
         }
-        let slacks = self.surface.slacks(&samples);
+        let slacks = self.surface.slacks(PointSet::of(&samples).points());
         let own = &slacks[requirement * samples.len()..][..samples.len()];
         let slope =
             |axis: usize| (own[2 * axis + 1] - own[2 * axis + 2]) / (2.0 * TUNING.step_of_difference * multiples[axis]);
@@ -88,13 +88,9 @@ impl Slack for Worst<'_> {
     fn left(&mut self, multiples: &[f64]) -> Vec<f64> {
         let count = self.surface.count;
         let surface = &self.surface;
-        let evaluate = |points: &[Vec<f64>], values: &mut [f64]| {
-            let samples: Vec<Vec<f64>> = points.iter().map(|xi| surface.sample(multiples, xi)).collect();
-            values.copy_from_slice(&surface.slacks(&samples));
-            Ok::<_, std::convert::Infallible>(())
-        };
+        let evaluate = |points: &[Vec<f64>]| surface.slacks_at(multiples, points.iter().map(Vec::as_slice));
         let places: Vec<Vec<f64>> = self.known.iter().flatten().cloned().collect();
-        let Ok(found) = self.search.extremes(count, &self.before, &places, evaluate);
+        let found = self.search.extremes(count, &self.before, &places, &evaluate);
         for (known, found) in self.known.iter_mut().zip(&found) {
             let is_near =
                 |other: &Vec<f64>| other.iter().zip(&found.lowest).all(|(a, b)| (a - b).abs() < TUNING.same_place);
@@ -108,8 +104,8 @@ impl Slack for Worst<'_> {
     }
 
     fn is_known_to_fail(&self, multiples: &[f64]) -> bool {
-        let places: Vec<Vec<f64>> = self.known.iter().flatten().map(|xi| self.surface.sample(multiples, xi)).collect();
-        self.surface.slacks(&places).iter().any(|slack| *slack < 0.0)
+        let places: Vec<&[f64]> = self.known.iter().flatten().map(Vec::as_slice).collect();
+        self.surface.slacks_at(multiples, places.into_iter()).iter().any(|slack| *slack < 0.0)
     }
 
     fn linearised(&mut self, multiples: &[f64]) -> Vec<Linear> {

@@ -5,8 +5,8 @@ use super::surface::DesignSurface;
 use super::tuning::TUNING;
 use super::worst::{Assessed, around, quotients};
 use crate::applications::allocate::tuning::TUNING as ALLOCATE;
-use crate::numerics::Linear;
 use crate::numerics::statistics::{Mixture, weighted_quantile};
+use crate::numerics::{Linear, PointSet};
 use crate::study::statistics::Laws;
 
 /// Slacks in a share of the samples of the parameters' laws, which move with the nominal values.
@@ -14,7 +14,7 @@ pub struct Yield<'s> {
     surface: &'s DesignSurface,
     goal: Goal,
     /// Values of the uncertain parameters, about a point.
-    values: Vec<Vec<f64>>,
+    values: PointSet,
     weights: Vec<f64>,
     from: Vec<f64>,
     may_fail: f64,
@@ -24,8 +24,7 @@ impl<'s> Yield<'s> {
     /// The yield under these laws about a point.
     pub fn new(surface: &'s DesignSurface, goal: Goal, laws: &Laws, from: &[f64], share: f64) -> Self {
         let (points, weights) = Mixture::default().replicate(0, laws.dimension(), TUNING.samples_of_share);
-        let values = points.iter().map(|scores| laws.of_scores(scores)).collect();
-        Self { surface, goal, values, weights, from: from.to_vec(), may_fail: 1.0 - share }
+        Self { surface, goal, values: laws.of_scores(&points), weights, from: from.to_vec(), may_fail: 1.0 - share }
     }
 
     /// Requirements that are to be fulfilled together.
@@ -39,8 +38,9 @@ impl<'s> Yield<'s> {
 
     /// Least slack of a group of requirements for each sample, about a point.
     fn least(&self, point: &[f64], group: &[usize], samples: &[usize]) -> Vec<f64> {
+        let values = self.values.points();
         let moved: Vec<Vec<f64>> =
-            samples.iter().map(|&own| self.surface.axes.moved(&self.values[own], &self.from, point)).collect();
+            samples.iter().map(|&own| self.surface.axes.moved(values.point(own), &self.from, point)).collect();
         let slacks = self.surface.slacks(&moved);
         let least =
             |sample: usize| group.iter().map(|own| slacks[own * moved.len() + sample]).fold(f64::INFINITY, f64::min);
@@ -64,7 +64,7 @@ impl<'s> Yield<'s> {
 impl Assessed for Yield<'_> {
     fn slacks(&mut self, point: &[f64]) -> Vec<f64> {
         let mut slacks = vec![f64::INFINITY; self.surface.count()];
-        let all: Vec<usize> = (0..self.values.len()).collect();
+        let all: Vec<usize> = (0..self.weights.len()).collect();
         for group in self.groups() {
             let quantile = weighted_quantile(&self.least(point, &group, &all), &self.weights, self.may_fail);
             group.into_iter().for_each(|own| slacks[own] = quantile);
@@ -81,7 +81,7 @@ impl Assessed for Yield<'_> {
     }
 
     fn linearised(&mut self, point: &[f64]) -> Vec<(usize, Linear)> {
-        let all: Vec<usize> = (0..self.values.len()).collect();
+        let all: Vec<usize> = (0..self.weights.len()).collect();
         let points = around(self.surface, point);
         let of_group = |group: Vec<usize>| {
             let first = *group.first()?;

@@ -10,6 +10,7 @@ use crate::applications::allocate::run_simulations;
 use crate::applications::allocate::tuning::TUNING as ALLOCATE;
 use crate::methods::{Keep, Method};
 use crate::model::Requirement;
+use crate::numerics::PointSet;
 use crate::study::{Kept, Options, RunError, subsystems};
 
 /// A surrogate of all margins over a region of nominal values and the tolerances about them.
@@ -95,7 +96,7 @@ impl DesignSurface {
         let Some(margins) = self.kept.margins() else {
             return vec![ALLOCATE.unknown_margin; all * samples.len()];
         };
-        let mut slacks = margins.values(samples);
+        let mut slacks = margins.values(PointSet::of(samples).points());
         for (requirement, instants) in self.instants.iter().enumerate() {
             let (reserve, scale) = (self.reserves[requirement], self.scales[requirement]);
             for slack in &mut slacks[instants.start * samples.len()..instants.end * samples.len()] {

@@ -60,13 +60,12 @@ impl Assessed for WorstOfDesign<'_> {
             self.known.iter_mut().for_each(|known| *known = vec![Vec::new()]);
             return surface.slacks(&[surface.axes.sample(point, &[])]);
         }
-        let evaluate = |points: &[Vec<f64>], values: &mut [f64]| {
+        let evaluate = |points: &[Vec<f64>]| {
             let samples: Vec<Vec<f64>> = points.iter().map(|xi| surface.axes.sample(point, xi)).collect();
-            values.copy_from_slice(&surface.slacks(&samples));
-            Ok::<_, std::convert::Infallible>(())
+            surface.slacks(&samples)
         };
         let places: Vec<Vec<f64>> = self.known.iter().flatten().cloned().collect();
-        let Ok(found) = self.search.extremes(surface.count(), &self.before, &places, evaluate);
+        let found = self.search.extremes(surface.count(), &self.before, &places, &evaluate);
         self.has_learnt = false;
         for (known, found) in self.known.iter_mut().zip(&found) {
             let is_near =

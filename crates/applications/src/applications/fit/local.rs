@@ -6,8 +6,8 @@ use super::readings::{ReadValues, Readings};
 use super::tuning::TUNING;
 use super::{FitError, Measurements};
 use crate::numerics::{
-    Design, ParameterBox, SAFETY_OF_SURROGATE, SparseBasis, SparseWork, Surrogate, SurrogateWork, Tubes, corners,
-    largest,
+    Design, ParameterBox, PointSet, SAFETY_OF_SURROGATE, SparseBasis, SparseWork, Surrogate, SurrogateWork, Tubes,
+    corners, largest,
 };
 
 /// Skew axes: ξ = center + axes · η, η ∈ [−1, 1]^k, in multiples of the half intervals of the model's box.
@@ -145,7 +145,7 @@ impl Local {
         let mut work = SurrogateWork::default();
         let coefficients = surrogate.coefficients(&nodes.values.concat(), &mut work);
         let mut found = vec![0.0; direct.values.len() * held_out.len()];
-        basis.values(held_out, &coefficients, &mut found, &mut SparseWork::default());
+        basis.values(PointSet::of(held_out).points(), &coefficients, &mut found, &mut SparseWork::default());
         let error = |index: usize| {
             let differences = found[index * held_out.len()..][..held_out.len()].iter().zip(&direct.values[index]);
             let most = largest(differences.map(|(a, b)| a - b));
@@ -198,7 +198,7 @@ impl Local {
     pub fn at(&self, points: &[Vec<f64>]) -> Vec<f64> {
         let mut values = vec![0.0; self.rows.len() * points.len()];
         let coefficients = &self.tubes.coefficients[..self.rows.len() * self.basis.len()];
-        self.basis.values(points, coefficients, &mut values, &mut SparseWork::default());
+        self.basis.values(PointSet::of(points).points(), coefficients, &mut values, &mut SparseWork::default());
         values
     }
 }

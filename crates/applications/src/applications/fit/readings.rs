@@ -7,8 +7,7 @@ use super::{FitError, Measurements};
 use crate::applications::allocate::{raise, run_simulations};
 use crate::methods::Method;
 use crate::model::{Description, Stepping};
-use crate::numerics::Interpolation;
-use crate::numerics::ParameterBox;
+use crate::numerics::{Interpolation, ParameterBox, PointSet};
 use crate::study::{Evaluator, Kept, Options, run_keeping};
 
 /// Surrogates over a box of the parameters.
@@ -152,8 +151,9 @@ impl Readings<'_> {
                 }
             }
         }
+        let points = PointSet::of(samples);
         let of_row = |(row, outputs): (usize, Vec<usize>)| {
-            let values = self.evaluator.values(row, &outputs, samples);
+            let values = self.evaluator.values(row, &outputs, points.points());
             let lines = values.chunks_exact(samples.len()).map(<[f64]>::to_vec);
             outputs.into_iter().zip(lines).map(|(output, line)| ((row, output), line)).collect::<Vec<_>>()
         };

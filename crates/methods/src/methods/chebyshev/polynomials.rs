@@ -11,7 +11,7 @@ use crate::methods::result::{BandBuilder, PolynomialEstimate};
 use crate::methods::tuning::TUNING as METHODS;
 use crate::methods::validation::Validation;
 use crate::numerics::{
-    Extent, PolynomialRange, Range, Sample, SparseWork, Surrogate, SurrogateWork, corners, truncation,
+    Extent, PointSet, PolynomialRange, Range, Sample, SparseWork, Surrogate, SurrogateWork, corners, truncation,
 };
 
 /// Polynomials through the outputs' own samples.
@@ -34,7 +34,8 @@ impl Polynomials<'_> {
         let own = |&output: &usize| self.coefficients[output * count..][..count].iter().copied();
         let coefficients: Vec<f64> = outputs.iter().flat_map(own).collect();
         let mut values = vec![0.0; outputs.len() * points.len()];
-        self.surrogate.basis().values(points, &coefficients, &mut values, &mut SparseWork::default());
+        let points = PointSet::of(points);
+        self.surrogate.basis().values(points.points(), &coefficients, &mut values, &mut SparseWork::default());
         values
     }
 
@@ -97,6 +98,7 @@ pub(super) fn expanded(
     let rounding: Vec<f64> = (0..ensemble.outputs()).map(|output| ensemble.rounding(output)).collect();
     let kinks: Vec<bool> = (0..ensemble.outputs()).map(|output| ensemble.has_kink(output)).collect();
     let sampling = Sampling { observed: Observed::Outputs, until: Until::FirstStop, whole: false };
+    let validation_points = PointSet::of(&validation.points);
     let mut reached = 0;
     let mut simulated = ensemble.simulate(samples, sampling, &mut |rows, values| {
         let keeps = kept.is_some();
@@ -109,7 +111,7 @@ pub(super) fn expanded(
                     ensemble.go_on().ok()?;
                     let coefficients = surrogate.coefficients(responses, work);
                     let mut at_validation = vec![0.0; validation.points.len()];
-                    surrogate.basis().values(&validation.points, &coefficients, &mut at_validation, sparse);
+                    surrogate.basis().values(validation_points.points(), &coefficients, &mut at_validation, sparse);
                     let enclosed = range.enclose(&coefficients);
                     let truncation = truncation(surrogate.basis(), &coefficients);
                     let (range, excess) = (enclosed.outer, enclosed.excess());

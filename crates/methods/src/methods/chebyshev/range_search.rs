@@ -1,11 +1,9 @@
 //! Ranges of the outputs in a row over the box: apart for parameters that do not act together, on a lattice for up to
 //! three that do, by climbs for more.
 
-use std::convert::Infallible;
-
 use super::tuning::TUNING;
 use crate::numerics::{
-    Extent, ExtremeSearch, Extremes, Lattices, Range, Separation, extremes, extremes_from, largest, spread,
+    Extent, ExtremeSearch, Extremes, Lattices, Range, Separation, ValuesAt, extremes, extremes_from, largest, spread,
 };
 
 /// The extremes of each output in the row before, where they were searched for by climbs.
@@ -84,7 +82,7 @@ impl RangeSearch {
         let mut defects = Vec::with_capacity(values.len());
         for (index, values) in values.iter().enumerate() {
             let of_output = |points: &[Vec<f64>]| (functions.evaluate)(&functions.outputs[index..=index], points);
-            let separated = self.separation.of(values, of_output);
+            let separated = self.separation.of(values, &of_output);
             defects.push(separated.defect);
             match alike.iter_mut().find(|(groups, _)| *groups == separated.groups) {
                 Some((_, places)) => places.push(index),
@@ -115,14 +113,14 @@ impl RangeSearch {
         let evaluate = |points: &[Vec<f64>]| (functions.evaluate)(outputs, points);
         let Some(search) = &self.climbs else {
             let all: Vec<usize> = (0..functions.degrees.len()).collect();
-            return extremes(&self.lattices, &functions.intervals(&all), &functions.rounding(outputs), evaluate);
+            return extremes(&self.lattices, &functions.intervals(&all), &functions.rounding(outputs), &evaluate);
         };
         previous.resize(previous.len().max(outputs.iter().max().map_or(0, |most| most + 1)), None);
         // Neighbours are used only if all outputs have them.
         let neighbours: Option<Vec<Extremes>> = outputs.iter().map(|&output| previous[output].clone()).collect();
         let places = outputs.first().and_then(|&output| functions.places.get(block(output)));
         let places = places.map_or(&[][..], Vec::as_slice);
-        let mut found = climb(search, outputs.len(), &neighbours.unwrap_or_default(), places, &evaluate);
+        let mut found = search.extremes(outputs.len(), &neighbours.unwrap_or_default(), places, &evaluate);
         let checked = evaluate(&self.checks);
         let lines = || checked.chunks_exact(self.checks.len());
         let beyond = |(found, line): (&Extremes, &[f64])| {
@@ -130,12 +128,12 @@ impl RangeSearch {
         };
         if found.iter().zip(lines()).any(beyond) {
             let places = [places, &self.checks].concat();
-            found = climb(search, outputs.len(), &[], &places, &evaluate);
+            found = search.extremes(outputs.len(), &[], &places, &evaluate);
         }
         outputs.iter().zip(&found).for_each(|(&output, found)| previous[output] = Some(found.clone()));
         let mut extents: Vec<Extent> = found.into_iter().map(extent).collect();
         extents.iter_mut().zip(lines()).for_each(|(extent, line)| extent.include(&self.checks, line));
-        polish(&mut extents, evaluate);
+        polish(&mut extents, &evaluate);
         extents
     }
 
@@ -152,12 +150,12 @@ impl RangeSearch {
                 (functions.evaluate)(outputs, &whole)
             };
             let parts = if group.len() <= TUNING.lattice_parameters {
-                extremes(&self.lattices, &functions.intervals(group), &functions.rounding(outputs), evaluate)
+                extremes(&self.lattices, &functions.intervals(group), &functions.rounding(outputs), &evaluate)
             } else {
                 let search = ExtremeSearch::new(group.len());
-                let found = climb(&search, outputs.len(), &[], &[], &evaluate);
+                let found = search.extremes(outputs.len(), &[], &[], &evaluate);
                 let mut parts: Vec<Extent> = found.into_iter().map(extent).collect();
-                polish(&mut parts, evaluate);
+                polish(&mut parts, &evaluate);
                 parts
             };
             for ((sum, part), anchored) in sums.iter_mut().zip(&parts).zip(anchored) {
@@ -217,23 +215,8 @@ fn intervals(degrees: &[u8], axes: &[usize], are_polynomials: bool) -> Vec<usize
     axes.iter().map(along).collect()
 }
 
-fn climb(
-    search: &ExtremeSearch,
-    outputs: usize,
-    neighbours: &[Extremes],
-    places: &[Vec<f64>],
-    evaluate: &impl Fn(&[Vec<f64>]) -> Vec<f64>,
-) -> Vec<Extremes> {
-    let evaluate = |points: &[Vec<f64>], values: &mut [f64]| {
-        values.copy_from_slice(&evaluate(points));
-        Ok::<(), Infallible>(())
-    };
-    let Ok(found) = search.extremes(outputs, neighbours, places, evaluate);
-    found
-}
-
 /// Continues climbs by quadratics: along a ridge climbs end early.
-fn polish(extents: &mut [Extent], evaluate: impl Fn(&[Vec<f64>]) -> Vec<f64>) {
+fn polish(extents: &mut [Extent], evaluate: &ValuesAt) {
     let polished = extremes_from(extents, evaluate);
     extents.iter_mut().zip(polished).for_each(|(extent, polished)| extent.improve(polished));
 }

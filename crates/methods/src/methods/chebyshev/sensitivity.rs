@@ -10,8 +10,8 @@ use super::range_search::block;
 use super::tuning::TUNING;
 use crate::methods::followed::Sensitivity;
 use crate::numerics::{
-    Extent, ParameterBox, Range, SobolDecomposition, SparseBasis, SparseGrid, SparseWork, Surrogate, SurrogateWork,
-    TensorGrid,
+    Extent, ParameterBox, PointSet, Range, SobolDecomposition, SparseBasis, SparseGrid, SparseWork, Surrogate,
+    SurrogateWork, TensorGrid,
 };
 
 /// Polynomials of the outputs themselves, of a degree that most of them need not have.
@@ -23,7 +23,7 @@ struct Fine {
     /// Basis of all parameters but one.
     without: SparseBasis,
     /// ξ of these on which their polynomials' ranges are found.
-    lattice: Vec<Vec<f64>>,
+    lattice: PointSet,
 }
 
 /// Outputs as functions of the parameters.
@@ -183,7 +183,7 @@ impl Fine {
             decomposition,
             nominal: nominal.iter().map(|&xi| chebyshev(xi)).collect(),
             without: SparseBasis::tensor(&vec![degree; k - 1]),
-            lattice: (0..lattice.len()).map(|index| lattice.sample(index)).collect(),
+            lattice: PointSet::of(&(0..lattice.len()).map(|index| lattice.sample(index)).collect::<Vec<_>>()),
         }
     }
 
@@ -199,9 +199,10 @@ impl Fine {
             };
             held.extend((0..stride).map(at));
         }
-        let mut values = vec![0.0; terms / self.without.len() * self.lattice.len()];
-        self.without.values(&self.lattice, &held, &mut values, &mut SparseWork::default());
-        values.chunks_exact(self.lattice.len()).map(|line| self.width(line)).collect()
+        let lattice = self.lattice.points();
+        let mut values = vec![0.0; terms / self.without.len() * lattice.len()];
+        self.without.values(lattice, &held, &mut values, &mut SparseWork::default());
+        values.chunks_exact(lattice.len()).map(|line| self.width(line)).collect()
     }
 
     /// The width of a function's range from its values on the lattice.

@@ -1,7 +1,7 @@
 use super::*;
 
 fn range(k: usize, intervals: usize, f: impl Fn(&[f64]) -> f64) -> Extent {
-    extremes(&Lattices::default(), &vec![intervals; k], &[0.0], |points| points.iter().map(|xi| f(xi)).collect())
+    extremes(&Lattices::default(), &vec![intervals; k], &[0.0], &|points| points.iter().map(|xi| f(xi)).collect())
         .swap_remove(0)
 }
 
@@ -29,13 +29,15 @@ fn a_ridge_is_followed_to_its_end() {
 #[test]
 fn a_function_that_is_shifted_has_its_extremes_nearby() {
     let wave = |shift: f64| {
-        move |points: &[Vec<f64>]| points.iter().map(|xi| (9.0 * xi[0] + shift).sin() + 0.1 * xi[1]).collect()
+        move |points: &[Vec<f64>]| {
+            points.iter().map(|xi| (9.0 * xi[0] + shift).sin() + 0.1 * xi[1]).collect::<Vec<f64>>()
+        }
     };
-    let known: Vec<Extent> = extremes(&Lattices::default(), &[24; 2], &[0.0], wave(0.0));
-    let shifted = extremes_near(&known, wave(0.4));
+    let known: Vec<Extent> = extremes(&Lattices::default(), &[24; 2], &[0.0], &wave(0.0));
+    let shifted = extremes_near(&known, &wave(0.4));
     assert!((shifted[0].range.upper - 1.1).abs() < 1e-6 && (shifted[0].range.lower + 1.1).abs() < 1e-6, "{shifted:?}");
-    let slope = |shift: f64| move |points: &[Vec<f64>]| points.iter().map(|xi| xi[0] + shift).collect();
-    let shifted = extremes_near(&extremes(&Lattices::default(), &[4], &[0.0], slope(0.0)), slope(0.4));
+    let slope = |shift: f64| move |points: &[Vec<f64>]| points.iter().map(|xi| xi[0] + shift).collect::<Vec<f64>>();
+    let shifted = extremes_near(&extremes(&Lattices::default(), &[4], &[0.0], &slope(0.0)), &slope(0.4));
     assert!((shifted[0].range.upper - 1.4).abs() < 1e-12 && (shifted[0].range.lower + 0.6).abs() < 1e-12);
 }
 
@@ -91,7 +93,7 @@ fn search_stops_at_rounding_errors() {
         let first = points.iter().map(|xi| 3.0 + 2e-15 * noise(xi[0]));
         first.chain(points.iter().map(|xi| xi[0] + 1e-3 * noise(xi[0]))).collect()
     };
-    let found = extremes(&Lattices::default(), &[16], &[1e-13, 3e-3], evaluate);
+    let found = extremes(&Lattices::default(), &[16], &[1e-13, 3e-3], &evaluate);
     assert!(seen.get() < 200, "{} points", seen.get());
     assert!((found[1].range.upper - 1.0).abs() < 3e-3 && found[0].range.width() < 1e-14, "{found:?}");
 }

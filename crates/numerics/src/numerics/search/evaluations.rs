@@ -6,6 +6,7 @@ use rustc_hash::FxHashMap;
 
 use super::Extremes;
 use super::tuning::TUNING;
+use crate::numerics::extremes::ValuesAt;
 use crate::numerics::range::Range;
 
 /// The largest value of a function (sign 1), or of its negative.
@@ -31,11 +32,7 @@ pub(super) fn bits(point: &[f64]) -> Vec<u64> {
 
 impl Evaluations {
     /// Evaluates new points; returns the indices of all.
-    pub(super) fn look<E>(
-        &mut self,
-        wanted: Vec<Vec<f64>>,
-        evaluate: &mut impl FnMut(&[Vec<f64>], &mut [f64]) -> Result<(), E>,
-    ) -> Result<Vec<usize>, E> {
+    pub(super) fn look(&mut self, wanted: Vec<Vec<f64>>, evaluate: &ValuesAt) -> Vec<usize> {
         let first = self.points.len();
         let mut indices = Vec::with_capacity(wanted.len());
         for point in wanted {
@@ -49,13 +46,12 @@ impl Evaluations {
         }
         let new = &self.points[first..];
         if !new.is_empty() {
-            let mut values = vec![f64::NAN; new.len() * self.values.len()];
-            evaluate(new, &mut values)?;
+            let values = evaluate(new);
             for (line, values) in self.values.iter_mut().zip(values.chunks_exact(new.len())) {
                 line.extend_from_slice(values);
             }
         }
-        Ok(indices)
+        indices
     }
 
     /// Value that a goal maximises; NaN is the least of all.

@@ -19,6 +19,7 @@ pub(crate) mod tuning;
 
 use rustc_hash::FxHashSet;
 
+use super::extremes::ValuesAt;
 use super::range::Range;
 use climb::{Climb, target};
 use evaluations::{Evaluations, Goal, bits};
@@ -60,30 +61,26 @@ impl ExtremeSearch {
         Self { dimension, design: design(dimension) }
     }
 
-    /// Extremes of `outputs` functions. `evaluate` is given points and writes the values there, those of the first
-    /// function at all points, then of the second, …; it is called with many points a few times. `neighbours` are the
+    /// Extremes of `outputs` functions. `evaluate` is called with many points a few times. `neighbours` are the
     /// extremes of similar functions, one for each, or none; `places` are points where some function is known to be
     /// large or small.
-    ///
-    /// # Errors
-    /// The first of `evaluate`.
-    pub fn extremes<E>(
+    pub fn extremes(
         &self,
         outputs: usize,
         neighbours: &[Extremes],
         places: &[Vec<f64>],
-        mut evaluate: impl FnMut(&[Vec<f64>], &mut [f64]) -> Result<(), E>,
-    ) -> Result<Vec<Extremes>, E> {
+        evaluate: &ValuesAt,
+    ) -> Vec<Extremes> {
         let mut seen = Evaluations { values: vec![Vec::new(); outputs], ..Evaluations::default() };
         let known =
             neighbours.iter().flat_map(|known| [&known.lowest, &known.highest].into_iter().chain(&known.others));
         let known = known.cloned();
         let spared = if neighbours.is_empty() { 0 } else { (TUNING.scattered.0 - TUNING.scattered.1) * self.dimension };
         let design = &self.design[..self.design.len() - spared];
-        seen.look(design.iter().chain(places).cloned().chain(known).collect(), &mut evaluate)?;
+        seen.look(design.iter().chain(places).cloned().chain(known).collect(), evaluate);
         let goals = || (0..outputs).flat_map(|output| [1.0, -1.0].map(|sign| Goal { output, sign }));
         let separable = goals().map(|goal| self.separable_maximum(&seen, goal)).collect();
-        seen.look(separable, &mut evaluate)?;
+        seen.look(separable, evaluate);
 
         let mut climbs: Vec<Climb> = goals()
             .flat_map(|goal| {
@@ -103,7 +100,7 @@ impl ExtremeSearch {
         for _ in 0..TUNING.rounds {
             for stage in [Climb::probe, Climb::stride, Climb::refine] {
                 let wanted: Vec<Vec<Vec<f64>>> = climbs.iter_mut().map(|climb| stage(climb, &seen)).collect();
-                let places = seen.look(wanted.iter().flatten().cloned().collect(), &mut evaluate)?;
+                let places = seen.look(wanted.iter().flatten().cloned().collect(), evaluate);
                 let mut places = places.as_slice();
                 for (climb, wanted) in climbs.iter_mut().zip(&wanted) {
                     let (own, rest) = places.split_at(wanted.len());
@@ -120,7 +117,7 @@ impl ExtremeSearch {
                 break;
             }
         }
-        Ok((0..outputs).map(|output| seen.extremes(output, &ends)).collect())
+        (0..outputs).map(|output| seen.extremes(output, &ends)).collect()
     }
 
     /// The point at which the function would be largest if it were a sum of parabolas through the middle and the faces'

@@ -49,6 +49,24 @@ pub struct RareShare {
 /// Estimates for slacks that errors help, as they are, and that errors harm.
 type Estimates = [Estimate; 3];
 
+/// The least of several slacks at each point, each in its own scale, with errors that help, none, and errors that harm;
+/// NaN if one is unknown. `values` are slack by slack, point by point.
+pub fn least_slacks(values: &[f64], errors: &[f64], scales: &[f64]) -> Vec<[f64; 3]> {
+    let count = values.len() / errors.len().max(1);
+    let mut least = vec![[f64::INFINITY; 3]; count];
+    for ((values, error), scale) in values.chunks_exact(count.max(1)).zip(errors).zip(scales) {
+        for (least, value) in least.iter_mut().zip(values) {
+            for (least, sign) in least.iter_mut().zip([-1.0, 0.0, 1.0]) {
+                let slack = (value - sign * error) / scale;
+                if slack < *least || slack.is_nan() {
+                    *least = slack;
+                }
+            }
+        }
+    }
+    least
+}
+
 /// The share with a negative slack; `None` if nothing is found to fail. `slacks` has the values of points in
 /// independent normal scores, with errors that help, none, and errors that harm; `starts` are points from which the
 /// search for places that fail begins.

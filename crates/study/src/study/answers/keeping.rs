@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use super::kept::KeptPart;
 use crate::methods::{Keep, KeptSurrogate, Method, Refusal};
-use crate::numerics::{BandError, Sample, largest, step_error, surrogate_error};
+use crate::numerics::{BandError, PointSet, largest, step_error, surrogate_error};
 use crate::simulate::SimulationError;
 
 /// The method whose surrogate is stored.
@@ -67,10 +67,11 @@ fn errors_of_values(
     let rows = part.times.len();
     let Some((validation, _)) = &results.bounded.validation else { return Ok(vec![BandError::default(); outputs]) };
     let closures = part.closures()?;
-    let samples: Vec<Sample> = study.domain.samples(&validation.points);
+    let set = PointSet::of(&study.domain.samples(&validation.points));
+    let samples = set.points();
     let every: Vec<usize> = (0..outputs).collect();
     let own: Vec<Vec<f64>> =
-        (0..rows).into_par_iter().map(|row| part.surrogate.values(row, &every, &samples, &closures)).collect();
+        (0..rows).into_par_iter().map(|row| part.surrogate.values(row, &every, samples, &closures)).collect();
     let of_output = |output: usize| {
         let corrections = validation.corrections(output, rows, results.bounded.switched_from());
         let surrogate = |row: usize| {

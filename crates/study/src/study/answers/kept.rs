@@ -9,11 +9,9 @@ use std::borrow::Cow;
 use crate::study::ensemble::closure::MotionClosure;
 use crate::study::reduced::{KeptReduced, Margins, MarginsOfPart, ReducedValues};
 
-use rayon::prelude::*;
-
 use super::tuning::TUNING;
 use crate::methods::{self, KeptSurrogate};
-use crate::numerics::{BandError, PointSet, SparseBasis};
+use crate::numerics::{BandError, Points, SparseBasis};
 use crate::reduce::Subsystem;
 use crate::simulate::{SimulationError, Simulator};
 
@@ -143,10 +141,10 @@ impl Kept {
 
     /// Values of the polynomial through an output's own samples in a row, at samples of the model's box. `None` where
     /// the box was split.
-    pub fn own_values<P: AsRef<[f64]>>(&self, row: usize, output: usize, samples: &[P]) -> Option<Vec<f64>> {
+    pub fn own_values(&self, row: usize, output: usize, samples: Points) -> Option<Vec<f64>> {
         let (number, index) = self.indices[output];
         let Placed { part, parameters, .. } = &self.parts[number];
-        part.surrogate.own_values(row, &[index], &PointSet::of_coordinates(samples, parameters).points())
+        part.surrogate.own_values(row, &[index], samples.coordinates(parameters).points())
     }
 
     /// Margins of all requirements. `None` if the model has none, or one of them is not known.
@@ -192,21 +190,11 @@ impl Evaluator<'_> {
     /// Outputs in one row at samples of the model's box (values of all its uncertain parameters, in their units),
     /// output by output, sample by sample; NaN if a closure has no solution. In parallel, with the same bits for any
     /// number of threads.
-    pub fn values<P: AsRef<[f64]> + Sync>(&self, row: usize, outputs: &[usize], samples: &[P]) -> Vec<f64> {
-        let chunks: Vec<Vec<f64>> = samples
-            .par_chunks(TUNING.samples_at_once)
-            .map(|samples| self.values_of_chunk(row, outputs, samples))
-            .collect();
-        let mut values = Vec::with_capacity(outputs.len() * samples.len());
-        for index in 0..outputs.len() {
-            for (chunk, samples) in chunks.iter().zip(samples.chunks(TUNING.samples_at_once)) {
-                values.extend_from_slice(&chunk[index * samples.len()..][..samples.len()]);
-            }
-        }
-        values
+    pub fn values(&self, row: usize, outputs: &[usize], samples: Points) -> Vec<f64> {
+        samples.lines(TUNING.samples_at_once, outputs.len(), &|samples| self.values_of_chunk(row, outputs, samples))
     }
 
-    fn values_of_chunk<P: AsRef<[f64]>>(&self, row: usize, outputs: &[usize], samples: &[P]) -> Vec<f64> {
+    fn values_of_chunk(&self, row: usize, outputs: &[usize], samples: Points) -> Vec<f64> {
         let mut values = vec![f64::NAN; outputs.len() * samples.len()];
         for (number, (Placed { part, parameters, .. }, closures)) in
             self.kept.parts.iter().zip(&self.closures).enumerate()
@@ -216,9 +204,9 @@ impl Evaluator<'_> {
             if indices.is_empty() {
                 continue;
             }
-            let own = PointSet::of_coordinates(samples, parameters);
+            let own = samples.coordinates(parameters);
             let of_part: Vec<usize> = indices.iter().map(|&index| self.kept.indices[outputs[index]].1).collect();
-            let found = part.surrogate.values(row, &of_part, &own.points(), closures);
+            let found = part.surrogate.values(row, &of_part, own.points(), closures);
             for (&index, found) in indices.iter().zip(found.chunks_exact(samples.len().max(1))) {
                 values[index * samples.len()..][..samples.len()].copy_from_slice(found);
             }

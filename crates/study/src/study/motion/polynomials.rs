@@ -4,7 +4,7 @@
 //! times of these, and the poses at times that are stretched from event to event (decision 0257).
 
 use super::Recorded;
-use crate::numerics::{SparseWork, Surrogate, SurrogateWork};
+use crate::numerics::{PointSet, SparseWork, Surrogate, SurrogateWork};
 use crate::results::MotionPolynomials;
 
 /// Recorded motions, and which of their rows are shown.
@@ -86,12 +86,12 @@ impl Recordings<'_> {
 
     /// How far points of bodies are from where other samples have them in the shown rows, at most, m.
     fn error(&self, surrogate: &Surrogate, nominal: &[f64], found: &MotionPolynomials) -> f64 {
-        let points: Vec<Vec<f64>> = self.others.iter().map(|(xi, _)| xi.clone()).collect();
-        let count = points.len();
+        let points = PointSet::of(&self.others.iter().map(|(xi, _)| xi).collect::<Vec<_>>());
+        let count = self.others.len();
         // Deviations: (number, sample)
         let deviations = |coefficients: &[f64], numbers: usize| {
             let mut found = vec![0.0; numbers * count];
-            surrogate.basis().values(&points, coefficients, &mut found, &mut SparseWork::default());
+            surrogate.basis().values(points.points(), coefficients, &mut found, &mut SparseWork::default());
             found
         };
         let events = &found.events;

@@ -8,7 +8,7 @@ use crate::study::problem::Study;
 use super::kept::KeptReduced;
 use super::values::ChannelValues;
 use crate::methods::Method;
-use crate::numerics::{BandError, Sample, largest, step_error, surrogate_error};
+use crate::numerics::{BandError, PointSet, largest, step_error, surrogate_error};
 
 /// Stored surrogates of reduced outputs and margins, with the errors of their values.
 pub fn kept_reduced(
@@ -25,9 +25,10 @@ pub fn kept_reduced(
     let outcome = &results.methods[index].1;
     let (validation, _) = results.validation.as_ref()?;
     let mut kept = KeptReduced { surrogate, values: values.clone(), errors: Vec::new() };
-    let samples: Vec<Sample> = study.domain.samples(&validation.points);
+    let set = PointSet::of(&study.domain.samples(&validation.points));
+    let samples = set.points();
     let every: Vec<usize> = (0..values.count()).collect();
-    let own = kept.surrogate.values(0, &every, &samples, &kept.closures());
+    let own = kept.surrogate.values(0, &every, samples, &kept.closures());
     let of_value = |value: usize| {
         let direct = validation.direct.at(0, value);
         let known = &own[value * samples.len()..][..samples.len()];

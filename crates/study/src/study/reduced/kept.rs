@@ -3,13 +3,11 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use rayon::prelude::*;
-
 use super::ensemble::Composition;
 use super::tuning::TUNING;
 use super::values::{ChannelValues, Selection};
 use crate::methods::{Closure, KeptSurrogate};
-use crate::numerics::{BandError, largest};
+use crate::numerics::{BandError, Points, largest, least_of_lines};
 
 /// The surrogate of all reduced outputs, then of all margins of requirements.
 #[derive(Clone, Debug)]
@@ -33,12 +31,10 @@ impl KeptReduced {
 
     /// The first `count` values at samples of the subsystem's box, one after the other, sample by sample. In parallel,
     /// with the same bits for any number of threads.
-    pub fn values<P: AsRef<[f64]> + Sync>(&self, count: usize, samples: &[P]) -> Vec<f64> {
+    pub fn values(&self, count: usize, samples: Points) -> Vec<f64> {
         let wanted: Vec<usize> = (0..count).collect();
         let closures = self.closures();
-        let of_chunk = |samples: &[P]| self.surrogate.values(0, &wanted, samples, &closures);
-        let chunks: Vec<Vec<f64>> = samples.par_chunks(TUNING.samples_at_once).map(of_chunk).collect();
-        together(count, &chunks, samples.len())
+        samples.lines(TUNING.samples_at_once, count, &|samples| self.surrogate.values(0, &wanted, samples, &closures))
     }
 
     /// Error of a requirement's margin anywhere in the box; unknown if it cannot be relied on.
@@ -65,20 +61,19 @@ impl KeptReduced {
 
     /// Margins of all `count` requirements at samples of the subsystem's box, requirement by requirement, sample by
     /// sample; NaN if one is unknown. In parallel, with the same bits for any number of threads.
-    pub fn margins<P: AsRef<[f64]> + Sync>(&self, count: usize, samples: &[P]) -> Vec<f64> {
+    pub fn margins(&self, count: usize, samples: Points) -> Vec<f64> {
         let first = if count == 0 { self.values.count() } else { self.values.parts(0).start };
         let wanted: Vec<usize> = (first..self.values.count()).collect();
         let closures = self.closures();
-        let of_chunk = |samples: &[P]| {
+        let of_chunk = |samples: Points| {
             let values = self.surrogate.values(0, &wanted, samples, &closures);
-            let margin = |index: usize| {
-                let (requirement, sample) = (index / samples.len(), index % samples.len());
-                self.values.margin(requirement, |value| values[(value - first) * samples.len() + sample])
+            let of_requirement = |requirement: usize| {
+                let Range { start, end } = self.values.parts(requirement);
+                least_of_lines(&values[(start - first) * samples.len()..(end - first) * samples.len()], samples.len())
             };
-            (0..count * samples.len()).map(margin).collect::<Vec<f64>>()
+            (0..count).flat_map(of_requirement).collect()
         };
-        let chunks: Vec<Vec<f64>> = samples.par_chunks(TUNING.samples_at_once).map(of_chunk).collect();
-        together(count, &chunks, samples.len())
+        samples.lines(TUNING.samples_at_once, count, &of_chunk)
     }
 
     /// Closures that compute values from channels.
@@ -87,18 +82,4 @@ impl KeptReduced {
             |independent| Box::new(Composition { values: &self.values, independent }) as Box<dyn Closure + '_>;
         self.surrogate.independent().into_iter().map(closure).collect()
     }
-}
-
-/// Lines of chunks of samples as lines of all samples.
-fn together(count: usize, chunks: &[Vec<f64>], samples: usize) -> Vec<f64> {
-    let of_line = |line: usize| {
-        let of_chunk = |chunk: &Vec<f64>| {
-            let own = chunk.len() / count;
-            chunk[line * own..][..own].to_vec()
-        };
-        chunks.iter().flat_map(of_chunk).collect::<Vec<f64>>()
-    };
-    let mut all = Vec::with_capacity(count * samples);
-    (0..count).for_each(|line| all.extend(of_line(line)));
-    all
 }

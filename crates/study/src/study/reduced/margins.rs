@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use super::kept::KeptReduced;
-use crate::numerics::PointSet;
+use crate::numerics::{PointSet, Points};
 
 /// Stored surrogates of a subsystem, with indices from its numbers to the model's.
 #[derive(Clone)]
@@ -20,8 +20,8 @@ pub struct MarginsOfPart<'k> {
 
 impl MarginsOfPart<'_> {
     /// Samples of the model's box as those of the subsystem's.
-    fn own<P: AsRef<[f64]>>(&self, samples: &[P]) -> PointSet {
-        PointSet::of_coordinates(samples, self.parameters)
+    fn own(&self, samples: Points) -> PointSet {
+        samples.coordinates(self.parameters)
     }
 }
 
@@ -56,9 +56,9 @@ impl<'k> ReducedValues<'k> {
     }
 
     /// Values at samples of the model's box, one after the other; NaN if one is unknown.
-    pub fn values<P: AsRef<[f64]> + Sync>(&self, samples: &[P]) -> Vec<Vec<f64>> {
+    pub fn values(&self, samples: Points) -> Vec<Vec<f64>> {
         let found: Vec<Vec<f64>> =
-            self.parts.iter().map(|part| part.kept.values(part.reduced.len(), &part.own(samples).points())).collect();
+            self.parts.iter().map(|part| part.kept.values(part.reduced.len(), part.own(samples).points())).collect();
         let of = |&(part, own): &(usize, usize)| found[part][own * samples.len()..][..samples.len()].to_vec();
         self.indices.iter().map(of).collect()
     }
@@ -125,8 +125,8 @@ impl<'k> Margins<'k> {
     }
 
     /// Margins at samples of the model's box, requirement by requirement, sample by sample; NaN if one is unknown.
-    pub fn values<P: AsRef<[f64]> + Sync>(&self, samples: &[P]) -> Vec<f64> {
-        let of_part = |part: &MarginsOfPart| part.kept.margins(part.requirements.len(), &part.own(samples).points());
+    pub fn values(&self, samples: Points) -> Vec<f64> {
+        let of_part = |part: &MarginsOfPart| part.kept.margins(part.requirements.len(), part.own(samples).points());
         let found: Vec<Vec<f64>> = self.parts.iter().map(of_part).collect();
         let of = |&(part, own): &(usize, usize)| &found[part][own * samples.len()..][..samples.len()];
         self.indices.iter().flat_map(of).copied().collect()

@@ -4,7 +4,8 @@ use super::tuning::TUNING;
 use super::zones::LawInZone;
 use super::{intervals, law_summary};
 use crate::model::{Description, Law};
-use crate::numerics::statistics::{Copula, Distribution, Quantiles, normal_quantile, replicate};
+use crate::numerics::PointSet;
+use crate::numerics::statistics::{Copula, Distribution, JointLaw};
 use crate::results::LawSummary;
 use symdiff::math;
 
@@ -13,19 +14,14 @@ pub struct Laws {
     /// Names of the parameters.
     pub names: Vec<String>,
     laws: Vec<Law>,
-    /// Their values.
-    quantiles: Vec<Quantiles>,
     /// Lower ends of the box that is bounded, SI.
     pub lower: Vec<f64>,
     /// Its upper ends, SI.
     pub upper: Vec<f64>,
     /// Nominal values, SI.
     pub nominal: Vec<f64>,
-    /// The box that samples are drawn from.
-    least: Vec<f64>,
-    most: Vec<f64>,
-    /// Correlations.
-    pub copula: Copula,
+    /// Law of all of them, in the box that samples are drawn from; in zones by its polar coordinates.
+    joint: JointLaw,
     /// Joint laws of parameters in zones.
     zones: Vec<LawInZone>,
 }
@@ -60,20 +56,10 @@ impl Laws {
             Copula::new(&matrix).map_err(|_| "the matrix of correlations is not positive definite".to_owned())?;
         let (nominal, lower, upper) = (along(0), along(1), along(2));
         let laws: Vec<Law> = all.iter().map(of).collect();
-        let quantiles = laws.iter().map(|law| Quantiles::new(&law.distribution)).collect();
         let zones = LawInZone::all(description, &names);
-        Ok(Self {
-            names,
-            laws,
-            quantiles,
-            zones,
-            least: lower.clone(),
-            most: upper.clone(),
-            lower,
-            upper,
-            nominal,
-            copula,
-        })
+        let ends = lower.iter().zip(&upper).map(|(lower, upper)| [*lower, *upper]).collect();
+        let joint = JointLaw::new(distributions(&laws), copula, ends);
+        Ok(Self { names, laws, lower, upper, nominal, joint, zones })
     }
 
     /// Number of parameters.
@@ -88,19 +74,18 @@ impl Laws {
 
     /// Has samples drawn from a box that has nearly all of the laws.
     pub fn widen(&mut self) {
-        for (index, law) in self.laws.iter().enumerate() {
-            (self.least[index], self.most[index]) = ends(law, (self.lower[index], self.upper[index]));
-        }
+        let wide = |(law, (lower, upper)): (&Law, (f64, f64))| ends(law, (lower, upper)).into();
+        let box_ends = self.laws.iter().zip(self.bounded()).map(wide).collect();
+        self.joint.set_box(box_ends);
     }
 
     /// The box that samples are drawn from: ends of each parameter.
     pub fn drawn(&self) -> impl Iterator<Item = [f64; 2]> {
-        self.least.iter().zip(&self.most).map(|(least, most)| [*least, *most])
+        self.joint.box_ends().iter().copied()
     }
 
     /// Cuts off normal and lognormal laws at the box' ends.
     pub fn cut_off(&mut self) {
-        (self.least, self.most) = (self.lower.clone(), self.upper.clone());
         for (index, law) in self.laws.iter_mut().enumerate() {
             if let Distribution::Normal { mean, sigma } = law.distribution {
                 let (lower, upper) = (self.lower[index], self.upper[index]);
@@ -109,68 +94,58 @@ impl Laws {
             if let Distribution::Lognormal { lower, upper, .. } = &mut law.distribution {
                 (*lower, *upper) = (lower.max(self.lower[index]), upper.min(self.upper[index]));
             }
-            self.quantiles[index] = Quantiles::new(&law.distribution);
         }
+        let box_ends = self.bounded().map(|(lower, upper)| [lower, upper]).collect();
+        self.joint.set_box(box_ends);
+        self.joint.set_laws(distributions(&self.laws));
+    }
+
+    /// Ends of the box that is bounded.
+    fn bounded(&self) -> impl Iterator<Item = (f64, f64)> {
+        self.lower.iter().copied().zip(self.upper.iter().copied())
     }
 
     /// Largest probability outside the box that is bounded.
     pub fn outside(&self) -> f64 {
-        self.laws
-            .iter()
-            .zip(self.lower.iter().zip(&self.upper))
-            .map(|(law, (a, b))| law.distribution.outside(*a, *b))
-            .sum()
+        self.laws.iter().zip(self.bounded()).map(|(law, (a, b))| law.distribution.outside(a, b)).sum()
     }
 
     /// Largest probability outside the domain from which samples are drawn.
     pub fn left_out(&self) -> f64 {
-        self.laws
-            .iter()
-            .zip(self.least.iter().zip(&self.most))
-            .map(|(law, (a, b))| law.distribution.outside(*a, *b))
-            .sum()
+        self.laws.iter().zip(self.drawn()).map(|(law, [a, b])| law.distribution.outside(a, b)).sum()
     }
 
-    /// One replicate of samples, sample after sample: values of all parameters.
-    pub fn samples(&self, number: usize, count: usize) -> Vec<f64> {
-        let mut samples = replicate(number, self.dimension(), count);
-        for sample in samples.chunks_exact_mut(self.dimension()) {
-            if self.copula.is_independent() {
-                self.replace(sample, Quantiles::of_share);
-            } else {
-                sample.iter_mut().for_each(|share| *share = normal_quantile(*share));
-                self.replace_scores(sample);
-            }
+    /// One replicate of samples: values of all parameters.
+    pub fn samples(&self, number: usize, count: usize) -> PointSet {
+        self.placed(self.joint.samples(number, count))
+    }
+
+    /// The samples with these independent normal scores.
+    pub fn of_scores(&self, points: &[Vec<f64>]) -> PointSet {
+        self.placed(self.joint.of_scores(points))
+    }
+
+    /// Samples with the laws of zones.
+    fn placed(&self, mut samples: PointSet) -> PointSet {
+        for zone in &self.zones {
+            samples.for_each_mut(|sample| zone.place(sample));
         }
         samples
     }
 
-    /// The sample with these independent normal scores.
-    pub fn of_scores(&self, scores: &[f64]) -> Vec<f64> {
-        let mut sample = scores.to_vec();
-        self.replace_scores(&mut sample);
-        sample
-    }
-
-    /// Replaces independent normal scores with the sample that has them.
-    pub fn replace_scores(&self, sample: &mut [f64]) {
-        self.copula.correlate_scores(sample);
-        self.replace(sample, Quantiles::of_score);
-    }
-
-    /// Replaces numbers of the parameters with their values, within the box that samples are drawn from.
-    fn replace(&self, sample: &mut [f64], value: impl Fn(&Quantiles, f64) -> f64) {
-        for (index, (number, quantiles)) in sample.iter_mut().zip(&self.quantiles).enumerate() {
-            *number = value(quantiles, *number).clamp(self.least[index], self.most[index]);
-        }
-        self.zones.iter().for_each(|zone| zone.place(sample));
-    }
-
     /// As they are printed.
     pub fn summaries(&self) -> Vec<LawSummary> {
-        let ends = self.lower.iter().copied().zip(self.upper.iter().copied());
-        self.names.iter().zip(&self.laws).zip(ends).map(|((name, law), ends)| law_summary(name, law, ends)).collect()
+        self.names
+            .iter()
+            .zip(&self.laws)
+            .zip(self.bounded())
+            .map(|((name, law), ends)| law_summary(name, law, ends))
+            .collect()
     }
+}
+
+fn distributions(laws: &[Law]) -> impl Iterator<Item = &Distribution> {
+    laws.iter().map(|law| &law.distribution)
 }
 
 /// The ends of an interval that has nearly all of a law.

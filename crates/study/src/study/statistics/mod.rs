@@ -25,6 +25,7 @@ use crate::results::{
     Bounds, LawSummary, OutputStatistics, OutputStatisticsSummary, StatisticsResult, StatisticsSummary, Summary,
 };
 pub use laws::Laws;
+use products::Products;
 use rows::Rows;
 
 /// Why there are none.
@@ -119,7 +120,7 @@ fn of_run(
         left_out: laws.left_out(),
         outside: laws.outside(),
         simulations,
-        products: rows.products.as_ref().map(|products| products.samples.len()),
+        products: rows.products.as_ref().map(Products::count),
         outputs: outputs.iter().filter_map(|(index, output)| side_by_side(&rows, bounds, *index, output)).collect(),
         reduced,
         requirements,

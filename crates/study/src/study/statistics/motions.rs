@@ -57,7 +57,7 @@ pub(super) fn of_motions(
     for Prepared { subsystem, simulator } in prepared {
         let study = Study::new(&subsystem.description, simulator, &options).map_err(|error| error.to_string())?;
         let progress = Progress::new(count * study.rows(), options.progress);
-        let found = realisations(&study, &subsystem, &samples, &progress).map_err(|error| error.to_string())?;
+        let found = realisations(&study, &subsystem, samples.points(), &progress).map_err(|error| error.to_string())?;
         simulations += if study.domain.dimension() == 0 { 1 } else { count };
         drop(study);
         parts.push((subsystem, found.ok_or_else(|| INTERRUPTED.to_owned())?));

@@ -15,13 +15,13 @@ pub(super) fn all(rows: &Rows) -> Result<Vec<NumberStatistics>, String> {
     let Some(kept) = rows.kept.reduced(reduced.len()) else { return Ok(Vec::new()) };
     rows.stage("statistics of reduced outputs");
     let shares = rows.shares(true);
-    let at_products = rows.products.as_ref().map(|products| (products, kept.values(&products.samples)));
+    let at_products = rows.products.as_ref().map(|products| (products, kept.values(products.samples.points())));
     let fewer = rows.fewer(TUNING.most_samples_of_numbers / REPLICATES);
     let mut of_number = vec![Replicates::new(&shares); reduced.len()];
     for replicate in 0..REPLICATES {
         rows.progress(replicate, REPLICATES);
         let samples = rows.points(replicate, fewer);
-        for (own, values) in of_number.iter_mut().zip(kept.values(&samples)) {
+        for (own, values) in of_number.iter_mut().zip(kept.values(samples)) {
             rows.go_on()?;
             own.add(&mut { values });
         }

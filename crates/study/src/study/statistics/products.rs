@@ -7,7 +7,7 @@ use super::control_variates::{ControlVariate, largest};
 use super::laws::Laws;
 use super::tuning::TUNING;
 use crate::model::Description;
-use crate::numerics::Sample;
+use crate::numerics::PointSet;
 use crate::numerics::statistics::{REPLICATES, SampleQuantile, beta_quantile};
 use crate::study::answers::Kept;
 use crate::study::attained::tuning::TUNING as ATTAINED;
@@ -19,7 +19,7 @@ const DOUBT: f64 = 0.05 / (TUNING.beyond_error.len() + 1) as f64;
 
 /// Simulations of the first outputs, by sample, row and output, and of reduced outputs and margins.
 pub(super) struct Products {
-    pub samples: Vec<Sample>,
+    pub samples: PointSet,
     values: Vec<f64>,
     rows: usize,
     outputs: usize,
@@ -51,11 +51,12 @@ impl Products {
         }
         (options.stage)("samples of the laws");
         let simulations = simulations(&description.statistics.quantiles);
-        let own = laws.samples(REPLICATES, simulations);
-        let samples: Vec<Sample> =
-            own.chunks_exact(laws.dimension()).map(|own| own.iter().copied().collect()).collect();
-        let at = |indices: std::ops::Range<usize>| samples[indices].to_vec();
-        let chosen = ChosenSamples { count: samples.len(), at: &at };
+        let samples = laws.samples(REPLICATES, simulations);
+        let points = samples.points();
+        let at = |indices: std::ops::Range<usize>| {
+            indices.map(|index| points.point(index).iter().copied().collect()).collect()
+        };
+        let chosen = ChosenSamples { count: points.len(), at: &at };
         let options = Options { threads: options.threads, interrupted: options.interrupted, ..Options::default() };
         let found = sample(description, &options, chosen, |trajectories| {
             let (rows, columns) = (trajectories.times.len(), trajectories.outputs.len());
@@ -83,6 +84,11 @@ impl Products {
             beyond,
             quantiles,
         }))
+    }
+
+    /// Number of samples.
+    pub fn count(&self) -> usize {
+        self.samples.points().len()
     }
 
     /// The share of a quantile, and pairs that enclose it except for products that differ by more than each ε.
@@ -129,7 +135,7 @@ impl Products {
 
     /// A reduced output or a margin of all samples.
     fn of_number(&self, number: usize) -> impl Iterator<Item = &f64> {
-        self.numbers.iter().skip(number).step_by(self.numbers.len() / self.samples.len())
+        self.numbers.iter().skip(number).step_by(self.numbers.len() / self.count())
     }
 }
 

@@ -4,7 +4,7 @@ use crate::elements::RandomFunction;
 use crate::methods::{Ensemble, Observed, Sampling, Until};
 use crate::model::{Description, ParameterValue, Trajectory};
 use crate::numerics::statistics::Normals;
-use crate::numerics::{SAFETY_OF_STEPS, Sample, step_error};
+use crate::numerics::{PointSet, Points, SAFETY_OF_STEPS, Sample, step_error};
 use crate::reduce::Subsystem;
 use crate::simulate::SimulationError;
 use crate::study::ensemble::{Progress, samples_of_part};
@@ -36,10 +36,9 @@ pub(super) fn varied(description: &Description) -> Description {
 }
 
 /// Independent samples of laws.
-pub(super) fn samples(laws: &Laws, seed: usize, count: usize) -> Vec<Vec<f64>> {
-    let of =
-        |number: usize| laws.of_scores(&Normals::new(seed * TUNING.most_realisations + number).draw(laws.dimension()));
-    (0..count).map(of).collect()
+pub(super) fn samples(laws: &Laws, seed: usize, count: usize) -> PointSet {
+    let scores = |number: usize| Normals::new(seed * TUNING.most_realisations + number).draw(laws.dimension());
+    laws.of_scores(&(0..count).map(scores).collect::<Vec<_>>())
 }
 
 /// Responses of a subsystem's samples.
@@ -70,13 +69,13 @@ impl Realisations {
 pub(super) fn realisations(
     study: &Study,
     subsystem: &Subsystem,
-    samples: &[Vec<f64>],
+    samples: Points,
     progress: &Progress,
 ) -> Result<Option<Realisations>, SimulationError> {
-    let own = |sample: &Vec<f64>| subsystem.parameters.iter().map(|&number| sample[number]).collect();
+    let own = |sample: &[f64]| subsystem.parameters.iter().map(|&number| sample[number]).collect();
     // Without parameters and seeds, one motion is that of all samples.
     let count = if study.domain.dimension() == 0 { 1 } else { samples.len() };
-    let all: Vec<Sample> = samples[..count].iter().map(own).collect();
+    let all: Vec<Sample> = samples.iter().take(count).map(own).collect();
     let (plan, _) = steps_of_samples(study, &all)?;
     plan_reduction(study, &plan)?;
     let Some(direct) = simulated(study, &plan, &all, progress)? else { return Ok(None) };

@@ -3,11 +3,14 @@
 
 use rayon::prelude::*;
 
+use super::products::Products;
 use super::rows::Rows;
 use super::tuning::TUNING;
 use crate::model::{Analysis, Requirement};
-use crate::numerics::PointSet;
-use crate::numerics::statistics::{REPLICATES, RareShare, normal_quantile, rare_share, replicate, share_interval};
+use crate::numerics::Points;
+use crate::numerics::statistics::{
+    REPLICATES, RareShare, least_slacks, normal_quantile, rare_share, replicate, share_interval,
+};
 use crate::results::YieldSummary;
 use crate::study::reduced;
 
@@ -48,20 +51,20 @@ pub(super) fn all(rows: &Rows) -> Result<(Vec<YieldSummary>, Option<YieldSummary
     let requirements = &rows.description.requirements;
     let numbers: Vec<usize> = (0..requirements.len()).collect();
     let fewer = rows.fewer(TUNING.most_samples_of_margins / REPLICATES);
-    let samples: Vec<Vec<&[f64]>> = (0..REPLICATES).map(|replicate| rows.points(replicate, fewer)).collect();
+    let samples: Vec<Points> = (0..REPLICATES).map(|replicate| rows.points(replicate, fewer)).collect();
     let mut together = Together::new(rows, TOGETHER, &samples);
     let mut each = Vec::with_capacity(requirements.len());
     for group in numbers.chunks(TUNING.requirements_at_once) {
         let own = kept.only(group);
         let values = sampled(rows, &own, &samples)?;
-        let at_products = rows.products.as_ref().map(|products| (products, own.values(&products.samples)));
+        let at_products = rows.products.as_ref().map(|products| (products, own.values(products.samples.points())));
         for ((index, &number), values) in group.iter().enumerate().zip(values) {
             rows.progress(number, requirements.len());
             let requirement = &requirements[number];
             let (of_box, time) = (kept.error(number), kept.time_error(number));
             let (error, doubt) = match &at_products {
                 Some((products, found)) => {
-                    let own = &found[index * products.samples.len()..][..products.samples.len()];
+                    let own = &found[index * products.count()..][..products.count()];
                     let (error, doubt) = products.of_margin(number, own, &values, of_box - time);
                     (error + time, doubt)
                 }
@@ -87,9 +90,9 @@ pub(super) fn all(rows: &Rows) -> Result<(Vec<YieldSummary>, Option<YieldSummary
 }
 
 /// Margins of all samples, by requirement.
-fn sampled(rows: &Rows, margins: &reduced::Margins, samples: &[Vec<&[f64]>]) -> Result<Vec<Vec<f64>>, String> {
+fn sampled(rows: &Rows, margins: &reduced::Margins, samples: &[Points]) -> Result<Vec<Vec<f64>>, String> {
     let mut values = vec![Vec::new(); margins.count()];
-    for samples in samples {
+    for &samples in samples {
         rows.go_on()?;
         let found = margins.values(samples);
         values.iter_mut().zip(found.chunks_exact(samples.len())).for_each(|(all, own)| all.extend_from_slice(own));
@@ -99,10 +102,10 @@ fn sampled(rows: &Rows, margins: &reduced::Margins, samples: &[Vec<&[f64]>]) -> 
 
 impl<'a> Together<'a> {
     /// A group without requirements yet.
-    fn new(rows: &'a Rows, name: &'a str, samples: &[Vec<&[f64]>]) -> Self {
-        let count = samples.iter().map(Vec::len).sum();
+    fn new(rows: &'a Rows, name: &'a str, samples: &[Points]) -> Self {
+        let count = samples.iter().map(Points::len).sum();
         let (errors, scales, least) = (Vec::new(), Vec::new(), Vec::new());
-        let products = vec![[true; 3]; rows.products.as_ref().map_or(0, |products| products.samples.len())];
+        let products = vec![[true; 3]; rows.products.as_ref().map_or(0, Products::count)];
         Self { rows, name, doubt: 0.0, errors, scales, fulfilled: vec![[true; 3]; count], products, least }
     }
 
@@ -195,30 +198,21 @@ impl<'a> Together<'a> {
 
     /// The share that fails, by samples drawn near the failures.
     fn rare(&self, margins: &reduced::Margins) -> Option<RareShare> {
-        let laws = self.rows.laws;
-        // The least of all, each in its own scale, with errors that help, none, and errors that harm.
         let some = |points: &[Vec<f64>]| -> Vec<[f64; 3]> {
             if self.rows.go_on().is_err() {
                 // Unknown, at once: the search then ends soon.
                 return vec![[f64::NAN; 3]; points.len()];
             }
-            let scores = points.iter().map(Vec::as_slice);
-            let mut samples = PointSet::mapped(scores, laws.dimension(), |scores, axis| scores[axis]);
-            samples.for_each_mut(|sample| laws.replace_scores(sample));
-            let found = margins.values(&samples.points());
-            let of_sample = |sample: usize| {
-                [-1.0, 0.0, 1.0].map(|sign| {
-                    let slack = |index: usize| {
-                        (found[index * points.len() + sample] - sign * self.errors[index]) / self.scales[index]
-                    };
-                    let less = |a: f64, b: f64| if b < a || b.is_nan() { b } else { a };
-                    (0..self.errors.len()).map(slack).fold(f64::INFINITY, less)
-                })
-            };
-            (0..points.len()).map(of_sample).collect()
+            let found = margins.values(self.rows.laws.of_scores(points).points());
+            least_slacks(&found, &self.errors, &self.scales)
         };
         let at_once = (TUNING.most_margins_at_once / self.errors.len()).max(1);
-        rare_share(&self.starts(), &|points: &[Vec<f64>]| points.chunks(at_once).flat_map(some).collect())
+        let all = |points: &[Vec<f64>]| {
+            let mut found = Vec::with_capacity(points.len());
+            points.chunks(at_once).for_each(|points| found.extend_from_slice(&some(points)));
+            found
+        };
+        rare_share(&self.starts(), &all)
     }
 
     /// Independent normal scores of the samples with the least margins.

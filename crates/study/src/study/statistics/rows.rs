@@ -11,8 +11,8 @@ use super::laws::Laws;
 use super::products::Products;
 use super::tuning::TUNING;
 use crate::model::Description;
-use crate::numerics::largest;
 use crate::numerics::statistics::{REPLICATES, Replicates};
+use crate::numerics::{PointSet, Points, largest};
 use crate::results::OutputStatistics;
 use crate::simulate::is_one_number;
 use crate::study::Options;
@@ -26,7 +26,7 @@ pub(super) struct Rows<'a> {
     pub kept: &'a Kept,
     evaluator: Evaluator<'a>,
     /// By replicate.
-    samples: Vec<Vec<f64>>,
+    samples: Vec<PointSet>,
     /// If the surrogate of several parameters is not within the tolerance.
     pub products: Option<Products>,
 }
@@ -89,7 +89,7 @@ impl<'a> Rows<'a> {
 
     /// Samples of each row.
     pub fn samples(&self) -> usize {
-        self.samples.iter().map(|samples| samples.len() / self.laws.dimension()).sum()
+        self.samples.iter().map(|samples| samples.points().len()).sum()
     }
 
     /// The first `count` outputs, and the results that an analysis adds to the outputs, each with its number; without
@@ -109,13 +109,13 @@ impl<'a> Rows<'a> {
     }
 
     /// One replicate's samples, one in `fewer`: these points of the lattice are a lattice again.
-    pub fn points(&self, replicate: usize, fewer: usize) -> Vec<&[f64]> {
-        self.samples[replicate].chunks_exact(self.laws.dimension()).step_by(fewer).collect()
+    pub fn points(&self, replicate: usize, fewer: usize) -> Points<'_> {
+        self.samples[replicate].points().step_by(fewer)
     }
 
     /// Factor by which fewer samples are taken, so that there are this many of each replicate.
     pub fn fewer(&self, count: usize) -> usize {
-        (self.samples[0].len() / self.laws.dimension() / count).max(1)
+        (self.samples[0].points().len() / count).max(1)
     }
 
     fn of_output(&self, output: usize, of_row_done: &(dyn Fn() + Sync)) -> Result<OutputStatistics, String> {
@@ -181,7 +181,7 @@ impl<'a> Rows<'a> {
     /// Simulated values of an output with its surrogate as control variate, if there are any.
     fn control_variate(&self, row: usize, output: usize) -> Option<ControlVariate> {
         let products = self.products.as_ref()?;
-        let surrogate = self.evaluator.values(row, &[output], &products.samples);
+        let surrogate = self.evaluator.values(row, &[output], products.samples.points());
         products.of_output(row, output, &surrogate)
     }
 
@@ -195,10 +195,10 @@ impl<'a> Rows<'a> {
     /// An output's values in a row, by its own polynomial or through the loop closure.
     pub fn values(&self, row: usize, output: usize, replicate: usize, fewer: usize, by_own: bool) -> Vec<f64> {
         if by_own {
-            return self.kept.own_values(row, output, &self.points(replicate, fewer)).unwrap_or_default();
+            return self.kept.own_values(row, output, self.points(replicate, fewer)).unwrap_or_default();
         }
         let fewer = fewer.max(self.fewer(TUNING.closed_samples / REPLICATES));
-        self.evaluator.values(row, &[output], &self.points(replicate, fewer))
+        self.evaluator.values(row, &[output], self.points(replicate, fewer))
     }
 
     /// Largest difference between the polynomial through an output's own samples and the closure, if it may replace the
@@ -208,8 +208,8 @@ impl<'a> Rows<'a> {
             return Some(0.0);
         }
         let samples = self.points(0, self.fewer(TUNING.compared_samples));
-        let own = self.kept.own_values(row, output, &samples)?;
-        let closed = self.evaluator.values(row, &[output], &samples);
+        let own = self.kept.own_values(row, output, samples)?;
+        let closed = self.evaluator.values(row, &[output], samples);
         let apart = largest(own.iter().zip(&closed).map(|(own, closed)| own - closed));
         let (least, most) = closed.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), &v| (a.min(v), b.max(v)));
         // Written so that NaN does not.
@@ -241,7 +241,7 @@ impl<'a> Rows<'a> {
                 points.push(point);
             }
         }
-        let values = self.evaluator.values(row, &[output], &points);
+        let values = self.evaluator.values(row, &[output], PointSet::of(&points).points());
         let deviation = |axis: usize| {
             let between = points[2 * axis + 1][axis] - points[2 * axis][axis];
             let slope = (values[2 * axis + 1] - values[2 * axis]) / between;

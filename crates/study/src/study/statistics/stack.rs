@@ -29,8 +29,8 @@ pub(super) fn sensitivities(rows: &Rows, row: usize, output: usize) -> Vec<Sensi
 /// Histogram of the samples of an output; `None` if they are all the same, or unknown.
 pub(super) fn histogram(rows: &Rows, row: usize, output: usize) -> Option<Histogram> {
     let is_own = rows.own_error(row, output, rows.kept.error(output).total[row]).is_some();
-    let values: Vec<f64> =
-        (0..REPLICATES).flat_map(|replicate| rows.values(row, output, replicate, 1, is_own)).collect();
+    let values = (0..REPLICATES).map(|replicate| rows.values(row, output, replicate, 1, is_own)).collect::<Vec<_>>();
+    let values = values.concat();
     let (lower, upper) = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), &v| (a.min(v), b.max(v)));
     let width = (upper - lower) / TUNING.intervals as f64;
     // Written so that NaN has none.

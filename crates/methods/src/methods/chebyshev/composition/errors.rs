@@ -1,7 +1,5 @@
 //! Errors of the ends of composed ranges: the surrogate's, and the time steps'.
 
-use std::convert::Infallible;
-
 use super::tuning::TUNING;
 use super::{Found, Row};
 use crate::methods::chebyshev::range_search::{RangeSearch, block, extent};
@@ -202,14 +200,10 @@ impl Row<'_> {
         let evaluate = |points: &[Vec<f64>]| self.evaluate_some(outputs, points, std::slice::from_ref(way));
         let near = outputs.iter().map(|&output| &known[output]);
         let Some(search) = range_search.climbs() else {
-            return extremes_near(&near.cloned().collect::<Vec<_>>(), evaluate);
+            return extremes_near(&near.cloned().collect::<Vec<_>>(), &evaluate);
         };
         let near: Vec<Extremes> = near.map(|near| Extremes::at(near.range, near.places.clone())).collect();
-        let evaluate = |points: &[Vec<f64>], values: &mut [f64]| {
-            values.copy_from_slice(&evaluate(points));
-            Ok::<(), Infallible>(())
-        };
-        let Ok(found) = search.extremes(outputs.len(), &near, &[], evaluate);
+        let found = search.extremes(outputs.len(), &near, &[], &evaluate);
         found.into_iter().map(extent).collect()
     }
 }

@@ -7,7 +7,7 @@ use super::tuning::TUNING;
 use crate::methods::chebyshev::polynomials::Polynomials;
 use crate::methods::expansion::{Expansion, Moves};
 use crate::methods::kept::KeptRow;
-use crate::numerics::{Extent, Range, largest, surrogate_error, to_brinks, truncation};
+use crate::numerics::{Extent, PointSet, Range, largest, surrogate_error, to_brinks, truncation};
 
 impl Row<'_> {
     /// Values of the polynomials through outputs' own samples, output by output.
@@ -82,7 +82,7 @@ impl Row<'_> {
             return motion[..self.ensemble.outputs() * points.len()].to_vec();
         }
         let motion = motion[..self.extent.len() * points.len()].to_vec();
-        self.expansion().close(points, motion)
+        self.expansion().close(PointSet::of(points).points(), 1, motion)
     }
 
     /// Every output at some ξ, output by output.
@@ -106,7 +106,7 @@ impl Row<'_> {
 
     /// Every output with the motion moved in some ways, output by output, way by way, point by point.
     pub(super) fn evaluate_moved(&self, points: &[Vec<f64>], ways: &[Moves]) -> Vec<f64> {
-        self.expansion().evaluate_moved(points, ways)
+        self.expansion().evaluate_moved(PointSet::of(points).points(), ways)
     }
 
     /// Some outputs with the motion moved in some ways, output by output, way by way, point by point. All outputs
@@ -171,14 +171,14 @@ impl Row<'_> {
         }
         let wanted: Vec<usize> = jumping.iter().map(|&index| outputs[index]).collect();
         let mut extents: Vec<Extent> = jumping.iter().map(|&index| found[index].clone()).collect();
-        to_brinks(&mut extents, |points| self.evaluate_some(&wanted, points, std::slice::from_ref(way)));
+        to_brinks(&mut extents, &|points: &[Vec<f64>]| self.evaluate_some(&wanted, points, std::slice::from_ref(way)));
         jumping.into_iter().zip(extents).for_each(|(index, extent)| found[index] = extent);
     }
 
     /// The polynomials' values: 2n lines of points.
     pub(super) fn expanded(&self, points: &[Vec<f64>]) -> Vec<f64> {
         let mut motion = vec![0.0; self.extent.len() * points.len()];
-        self.expansion().expand(points, &mut motion);
+        self.expansion().expand(PointSet::of(points).points(), &mut motion);
         motion
     }
 

@@ -3,7 +3,7 @@
 use symdiff::jet::Monomials;
 
 use super::tuning::TUNING;
-use crate::numerics::{LeastSquares, SparseBasis, largest, truncation};
+use crate::numerics::{LeastSquares, PointSet, SparseBasis, largest, truncation};
 
 /// Terms in ξ.
 #[derive(Clone, Debug)]
@@ -265,7 +265,7 @@ impl Basis {
     pub fn values(&self, xi: &[Vec<f64>]) -> Vec<Vec<f64>> {
         let points = xi.iter().map(Vec::as_slice);
         match self {
-            Self::Grid(basis) => basis.terms(xi),
+            Self::Grid(basis) => basis.terms(PointSet::of(xi).points()),
             Self::Fitted(fitted) => values_of(points, |xi, into| fitted.values(xi, into)),
             Self::Taylor { monomials, centre } => {
                 let power = |(xi, (centre, &exponent)): (&f64, (&f64, &usize))| (xi - centre).powi(exponent as i32);

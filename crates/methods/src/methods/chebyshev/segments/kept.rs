@@ -5,7 +5,7 @@ use super::pieces::Pieces;
 use super::row::BoxRow;
 use crate::methods::closure::Closure;
 use crate::methods::kept::{CutRow, CutSurrogate};
-use crate::numerics::ParameterBox;
+use crate::numerics::{ParameterBox, Points};
 
 /// Polynomials in all parts of the box, with the rows in which outputs are known.
 #[derive(Clone, Debug)]
@@ -37,7 +37,7 @@ impl CutSurrogate for KeptPieces {
         &self.rows
     }
 
-    fn values(&self, row: usize, outputs: &[usize], samples: &[&[f64]], closure: &dyn Closure) -> Vec<f64> {
+    fn values(&self, row: usize, outputs: &[usize], samples: Points, closure: &dyn Closure) -> Vec<f64> {
         let points: Vec<Vec<f64>> = samples.iter().map(|sample| self.domain.xi(sample)).collect();
         let Self { domain, pieces, outputs: count, rows, motions } = self;
         let row = BoxRow { domain, outputs: *count, pieces, motions: &motions[row], closure, time: rows[row].time };

@@ -33,7 +33,7 @@ pub(super) fn extent(row: &SegmentRow, found: [Option<&Climb>; 2]) -> Extent {
 /// Adds results of quadratics that go on from the best climbs: along a curved ridge linear programmes end early.
 fn polish(row: &SegmentRow, climbs: &mut Vec<Climb>) {
     let known: Vec<Extent> = (0..row.outputs).map(|output| extent(row, best(climbs, output))).collect();
-    let polished = extremes_from(&known, |points| {
+    let polished = extremes_from(&known, &|points| {
         let points = row.piece.surrogate.points(points.to_vec());
         let values = row.outputs_at(&points).into_iter().enumerate();
         values.map(|(at, value)| if points[at % points.len()].is_inside() { value } else { f64::NAN }).collect()
