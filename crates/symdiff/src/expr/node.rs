@@ -4,7 +4,7 @@ use super::spline::Spline;
 
 /// A handle to a node of a [`Graph`](super::Graph); valid only for the graph that made it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct Expr(pub(super) u32);
+pub struct Expr(pub(crate) u32);
 
 impl Expr {
     /// Position of the node in its graph; children have smaller indices than their parents.

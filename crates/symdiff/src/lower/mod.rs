@@ -7,6 +7,7 @@
 
 mod c;
 mod node_table;
+mod readers;
 mod reciprocals;
 mod regions;
 mod registers;

@@ -8,6 +8,8 @@ use std::collections::{BTreeMap, BinaryHeap};
 
 use rustc_hash::FxHashMap;
 
+use super::node_table::NodeTable;
+use super::readers::Readers;
 use super::tape::Guard;
 use crate::expr::{Binary, Expr, Graph, Node, Unary};
 use crate::tuning::TUNING;
@@ -28,26 +30,28 @@ struct Nested {
 #[derive(Debug)]
 pub(crate) struct Regions {
     nested: Vec<Nested>,
-    of: FxHashMap<Expr, RegionId>,
+    /// The region of each node; empty if there is only the outside.
+    of: NodeTable,
 }
 
 impl Regions {
     /// The regions of the nodes of `body`, children first; `wanted` are used from outside, some only under a guard.
     pub(crate) fn new(graph: &Graph, body: &[Expr], wanted: impl Iterator<Item = (Expr, Option<Guard>)>) -> Self {
-        let mut regions =
-            Self { nested: vec![Nested { within: OUTSIDE, guard: None, depth: 0 }], of: FxHashMap::default() };
+        let outside = Nested { within: OUTSIDE, guard: None, depth: 0 };
+        let mut regions = Self { nested: vec![outside], of: NodeTable::new(0) };
         let mut known = FxHashMap::default();
         let guarded = |expr: &Expr| matches!(graph.node(*expr), Node::Binary(Binary::Select | Binary::SelectElse, ..));
+        let wanted: Vec<_> = wanted.collect();
+        if wanted.iter().all(|(_, guard)| guard.is_none()) && !body.iter().any(guarded) {
+            return regions;
+        }
+        regions.of = NodeTable::new(graph.len());
         for (expr, guard) in wanted {
             let region = guard.map_or(OUTSIDE, |guard| regions.enter(&mut known, OUTSIDE, guard));
             if let Some(guard) = guard {
                 regions.use_in(guard.condition, OUTSIDE);
             }
             regions.use_in(expr, region);
-        }
-        if known.is_empty() && !body.iter().any(guarded) {
-            regions.of.clear();
-            return regions;
         }
         let mut circular: FxHashMap<Expr, Vec<Expr>> = FxHashMap::default();
         for &expr in body {
@@ -84,9 +88,12 @@ impl Regions {
         regions
     }
 
-    /// The region that a node belongs to.
+    /// The region that a node of the tape belongs to.
     pub(crate) fn of(&self, expr: Expr) -> RegionId {
-        self.of.get(&expr).copied().unwrap_or(OUTSIDE)
+        if self.nested.len() == 1 {
+            return OUTSIDE;
+        }
+        self.of.get(expr).map_or(OUTSIDE, |region| region as RegionId)
     }
 
     /// The region of a guard within a region, if there is one.
@@ -153,12 +160,13 @@ impl Regions {
 
     /// Adds a use; returns whether it moved the node.
     fn use_in(&mut self, expr: Expr, region: RegionId) -> bool {
-        let Some(&before) = self.of.get(&expr) else {
-            self.of.insert(expr, region);
+        let Some(before) = self.of.get(expr) else {
+            self.of.insert(expr, region as u32);
             return false;
         };
+        let before = before as RegionId;
         let common = self.common(before, region);
-        self.of.insert(expr, common);
+        self.of.insert(expr, common as u32);
         common != before
     }
 
@@ -182,26 +190,19 @@ impl Regions {
                 kept.push(region);
             }
         }
-        self.of.values_mut().for_each(|region| *region = kept[*region]);
+        body.iter().for_each(|&expr| self.of.insert(expr, kept[self.of(expr)] as u32));
     }
 }
 
-/// An order of `count` nodes, operands first, that stays within a region as long as a node of it can be
-/// computed; otherwise in the given order. `block_of` gives the region of a node, `needs` its operands.
+/// An order of `count` instructions, operands first, that stays within a region as long as an instruction of it can be
+/// computed; otherwise in the given order. `block_of` gives the region of an instruction.
 pub(crate) fn order(
     regions: &Regions,
     count: usize,
     block_of: impl Fn(usize) -> RegionId,
-    needs: impl Fn(usize) -> Vec<usize>,
+    readers: &Readers,
 ) -> Vec<usize> {
-    let mut missing = vec![0_usize; count];
-    let mut users: Vec<Vec<usize>> = vec![Vec::new(); count];
-    for (index, missing) in missing.iter_mut().enumerate() {
-        for needed in needs(index) {
-            *missing += 1;
-            users[needed].push(index);
-        }
-    }
+    let mut missing = readers.missing(count);
     let mut ready: BTreeMap<RegionId, BinaryHeap<Reverse<usize>>> = BTreeMap::new();
     for index in (0..count).filter(|&index| missing[index] == 0) {
         ready.entry(block_of(index)).or_default().push(Reverse(index));
@@ -211,10 +212,10 @@ pub(crate) fn order(
     loop {
         if let Some(Reverse(index)) = ready.get_mut(&current).and_then(BinaryHeap::pop) {
             ordered.push(index);
-            for &user in &users[index] {
-                missing[user] -= 1;
-                if missing[user] == 0 {
-                    ready.entry(block_of(user)).or_default().push(Reverse(user));
+            for &reader in readers.of_writer(index) {
+                missing[reader] -= 1;
+                if missing[reader] == 0 {
+                    ready.entry(block_of(reader)).or_default().push(Reverse(reader));
                 }
             }
             continue;

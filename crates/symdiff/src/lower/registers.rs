@@ -19,7 +19,7 @@ pub(crate) fn allocate(steps: &[Step], targets: &[(Expr, u32)], register_of: &No
     let may_share = |expr: Expr| computed.contains(expr) && !placed.contains(expr) && !register_of.contains(expr);
     let shared = Shared::new(steps, &last_use, may_share);
     let mut last_use_of = last_use;
-    if !shared.next.is_empty() {
+    if shared.next.is_some() {
         for (index, step) in steps.iter().enumerate() {
             step.read().for_each(|read| last_use_of.insert(shared.root(read), index as u32));
         }
@@ -187,7 +187,8 @@ fn copy_at_once(copies: Vec<(u32, u32)>, mut fresh: impl FnMut() -> u32, items: 
 /// Values that share a register successively: the value elsewhere, and then the choice that a region makes.
 #[derive(Debug, Default)]
 struct Shared {
-    next: FxHashMap<Expr, Expr>,
+    /// By value, the next one in its register; `None` if no values share one.
+    next: Option<NodeTable>,
     /// Copies that are not needed, because their value is already in the register of the choice.
     needless: FxHashSet<usize>,
 }
@@ -195,6 +196,7 @@ struct Shared {
 impl Shared {
     fn new(steps: &[Step], last_use: &NodeTable, may_share: impl Fn(Expr) -> bool) -> Self {
         let mut shared = Self::default();
+        let nodes = last_use.nodes();
         let mut put_down: FxHashMap<Expr, (Expr, usize)> = FxHashMap::default();
         for (index, step) in steps.iter().enumerate() {
             let Step::Do(instruction) = step else { continue };
@@ -205,13 +207,14 @@ impl Shared {
                 }
                 (Op::Select, Some(chosen)) => {
                     let Some(&(value, copied_at)) = put_down.get(&last) else { continue };
-                    shared.next.insert(last, chosen);
+                    let next = shared.next.get_or_insert_with(|| NodeTable::new(nodes));
+                    next.insert(last, chosen.0);
                     // The choice overwrites the value, which must not be read afterwards.
                     if may_share(value)
                         && last_use.get(value).is_some_and(|last| (last as usize) < index)
-                        && !shared.next.contains_key(&value)
+                        && !next.contains(value)
                     {
-                        shared.next.insert(value, chosen);
+                        next.insert(value, chosen.0);
                         shared.needless.insert(copied_at);
                     }
                 }
@@ -223,8 +226,9 @@ impl Shared {
 
     /// The last of the values that share a register.
     fn root(&self, mut expr: Expr) -> Expr {
-        while let Some(&next) = self.next.get(&expr) {
-            expr = next;
+        let Some(next) = &self.next else { return expr };
+        while let Some(after) = next.get(expr) {
+            expr = Expr(after);
         }
         expr
     }

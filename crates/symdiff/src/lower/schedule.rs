@@ -1,8 +1,7 @@
 //! A tape's instructions before they have registers, and their order: region by region, equal operations together.
 
-use rustc_hash::FxHashMap;
-
 use super::node_table::NodeTable;
+use super::readers::Readers;
 use super::regions::{OUTSIDE, RegionId, Regions, order};
 use super::tape::{Guard, Op};
 use crate::expr::Expr;
@@ -62,15 +61,13 @@ pub(crate) fn in_regions(nodes: usize, pending: Vec<Pending>, regions: &Regions)
     if regions.is_empty() {
         return grouping.group(pending).into_iter().map(Step::Do).collect();
     }
-    let writers = pending.iter().enumerate();
-    let writer: FxHashMap<Expr, usize> =
-        writers.flat_map(|(index, one)| one.written().map(move |expr| (expr, index))).collect();
-    let needs = |index: usize| {
-        let one: &Pending = &pending[index];
-        let needed = one.read().chain(regions.conditions(one.region));
-        needed.filter_map(|expr| writer.get(&expr).copied()).collect()
-    };
-    let order = order(regions, pending.len(), |index| pending[index].region, needs);
+    let mut writer = NodeTable::new(nodes);
+    for (index, one) in pending.iter().enumerate() {
+        one.written().for_each(|expr| writer.insert(expr, index as u32));
+    }
+    let needs = |index: usize| pending[index].read().chain(regions.conditions(pending[index].region));
+    let readers = Readers::of(pending.len(), &writer, needs);
+    let order = order(regions, pending.len(), |index| pending[index].region, &readers);
     let mut steps = Vec::with_capacity(pending.len());
     let mut current = OUTSIDE;
     let mut go_to = |steps: &mut Vec<Step>, region: RegionId| {
@@ -86,40 +83,6 @@ pub(crate) fn in_regions(nodes: usize, pending: Vec<Pending>, regions: &Regions)
     }
     go_to(&mut steps, OUTSIDE);
     steps
-}
-
-/// The writers of an instruction's operands.
-fn written_by<'w>(one: &'w Pending, writer: &'w NodeTable) -> impl Iterator<Item = usize> + 'w {
-    one.read().filter_map(|read| writer.get(read)).map(|writer| writer as usize)
-}
-
-/// The instructions of a window that read results of others.
-struct Readers {
-    /// Readers of each writer in turn, writers ascending.
-    list: Vec<usize>,
-    /// By writer, the start of its readers in `list`; and the end.
-    begin: Vec<usize>,
-}
-
-impl Readers {
-    fn of(window: &[Pending], writer: &NodeTable) -> Self {
-        // Shifted by two: the counts of readers become their starts, and then, by filling, their ends.
-        let mut begin = vec![0; window.len() + 2];
-        window.iter().flat_map(|one| written_by(one, writer)).for_each(|writer| begin[writer + 2] += 1);
-        (2..begin.len()).for_each(|place| begin[place] += begin[place - 1]);
-        let mut list = vec![0; begin[window.len() + 1]];
-        for (index, one) in window.iter().enumerate() {
-            for writer in written_by(one, writer) {
-                list[begin[writer + 1]] = index;
-                begin[writer + 1] += 1;
-            }
-        }
-        Self { list, begin }
-    }
-
-    fn of_writer(&self, index: usize) -> &[usize] {
-        &self.list[self.begin[index]..self.begin[index + 1]]
-    }
 }
 
 /// Instructions of a window that are ready, operation by operation, first come, first served.
@@ -180,9 +143,8 @@ impl Grouping {
             for (index, one) in window.iter().enumerate() {
                 one.written().for_each(|expr| self.writer.insert(expr, index as u32));
             }
-            let mut missing = vec![0_usize; window.len()];
-            let readers = Readers::of(window, &self.writer);
-            readers.list.iter().for_each(|&index| missing[index] += 1);
+            let readers = Readers::of(window.len(), &self.writer, |index| window[index].read());
+            let mut missing = readers.missing(window.len());
             window.iter().flat_map(Pending::written).for_each(|expr| self.writer.remove(expr));
             let mut ready = Ready::of(window.len());
             let free = (0..window.len()).filter(|&index| missing[index] == 0);
