@@ -61,12 +61,8 @@ pub(crate) fn in_regions(nodes: usize, pending: Vec<Pending>, regions: &Regions)
     if regions.is_empty() {
         return grouping.group(pending).into_iter().map(Step::Do).collect();
     }
-    let mut writer = NodeTable::new(nodes);
-    for (index, one) in pending.iter().enumerate() {
-        one.written().for_each(|expr| writer.insert(expr, index as u32));
-    }
     let needs = |index: usize| pending[index].read().chain(regions.conditions(pending[index].region));
-    let readers = Readers::of(pending.len(), &writer, needs);
+    let readers = grouping.readers(&pending, needs);
     let order = order(regions, pending.len(), |index| pending[index].region, &readers);
     let mut steps = Vec::with_capacity(pending.len());
     let mut current = OUTSIDE;
@@ -130,22 +126,28 @@ impl Ready {
 
 /// Groups equal operations.
 struct Grouping {
-    /// Index in the current window of the instruction that writes a value.
+    /// Index in the current list of the instruction that writes a value; empty between lists.
     writer: NodeTable,
 }
 
 impl Grouping {
+    /// The readers among the instructions of a list. `needs` gives the values that one reads.
+    fn readers<N: Iterator<Item = Expr>>(&mut self, list: &[Pending], needs: impl Fn(usize) -> N) -> Readers {
+        for (index, one) in list.iter().enumerate() {
+            one.written().for_each(|expr| self.writer.insert(expr, index as u32));
+        }
+        let readers = Readers::of(list.len(), &self.writer, needs);
+        list.iter().flat_map(Pending::written).for_each(|expr| self.writer.remove(expr));
+        readers
+    }
+
     /// Groups equal operations within stretches of a fixed number of instructions: always all ready instructions of the
     /// most frequent operation.
     fn group(&mut self, pending: Vec<Pending>) -> Vec<Pending> {
         let mut grouped = Vec::with_capacity(pending.len());
         for window in pending.chunks(TUNING.window_of_grouping) {
-            for (index, one) in window.iter().enumerate() {
-                one.written().for_each(|expr| self.writer.insert(expr, index as u32));
-            }
-            let readers = Readers::of(window.len(), &self.writer, |index| window[index].read());
+            let readers = self.readers(window, |index| window[index].read());
             let mut missing = readers.missing(window.len());
-            window.iter().flat_map(Pending::written).for_each(|expr| self.writer.remove(expr));
             let mut ready = Ready::of(window.len());
             let free = (0..window.len()).filter(|&index| missing[index] == 0);
             free.for_each(|index| ready.enqueue(window[index].op, index));
