@@ -1,7 +1,7 @@
 //! Program → trajectories.
 //!
 //! - `start`: a consistent start, the rank of the constraints there;
-//! - `simulator`: a mechanism assembled and compiled, and `error`: why it cannot be;
+//! - `assembled`: a mechanism at its nominal start, `simulator`: the same with compiled steps, `error`: why not;
 //! - `step`: one step of a scheme for a tile of samples: stepper, Newton's iteration, the rank-revealing solve;
 //! - `time_functions`: functions of the time in the equations, and the steps that resolve them;
 //! - `control`: the step schedule that all samples share, fixed or from a tolerance;
@@ -20,6 +20,7 @@
 //! - `enclosure`: certified motions over a box of parameters.
 
 mod adjoint;
+mod assembled;
 mod closure;
 mod control;
 mod derived;
@@ -52,6 +53,7 @@ mod unmet_switch;
 mod visit;
 
 pub use adjoint::{CellFunctions, Functional, Gradient, NoGradient, Term, Under, Wanted, gradients, gradients_under};
+pub use assembled::Assembled;
 pub use closure::{Closure, Configuration, Points, choose_independent};
 pub use control::{Controller, Divided, Integration, Schedule, Steps, ToleranceSchedule, schedule_for_tolerance};
 pub use diagnostics::{OpenConstraint, SingularPass, SingularWatch, TooDeep, overlapping};
@@ -62,14 +64,14 @@ pub(crate) use ensemble::Needs;
 pub use ensemble::{EnsembleRun, JetBox};
 pub use error::SimulationError;
 pub use events::{
-    Boundary, Following, SegmentMethod, SegmentRun, WordsEnd, outputs_of_jets, segment_jets, segments_of,
+    Boundary, Following, SegmentMethod, SegmentRun, WordsEnd, cut_at_events, outputs_of_jets, segment_jets,
 };
 pub use explicit::{ExplicitObstacle, explicit_schedule};
 pub use integrators::{integrator, jet_integrator};
 pub use interruption::Interruption;
 pub use modal::is_one_number;
 pub use modes::{ExcitedMode, excited_modes};
-pub use simulator::{Assembled, Simulator};
+pub use simulator::Simulator;
 pub use start::Samples;
 pub(crate) use start::allowed_residual;
 pub(crate) use statics::Equilibrium;

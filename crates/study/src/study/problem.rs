@@ -78,8 +78,7 @@ impl<'a> Study<'a> {
         }
         let Options { certify_time, derivatives, progress, stage, interrupted, .. } = *options;
         let has_steps = !simulator.system.analysis.is_without_steps();
-        let time_functions =
-            if has_steps { TimeFunctions::of(&simulator, description.simulation.duration) } else { None };
+        let time_functions = if has_steps { simulator.time_functions(description.simulation.duration) } else { None };
         let store = OnceLock::new();
         Ok(Self {
             description,

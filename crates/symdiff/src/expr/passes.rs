@@ -104,6 +104,17 @@ impl Graph {
         self.rebuild(roots, |_, expr, _, _| replacements.get(&expr).copied())
     }
 
+    /// `roots` with every minimum and maximum as a choice by a condition. Where an interval decides the condition, the
+    /// derivative is that of one side, and so is its enclosure.
+    pub fn with_choices(&mut self, roots: &[Expr]) -> Vec<Expr> {
+        self.rebuild(roots, |graph, _, node, image| {
+            let Node::Binary(function @ (Binary::Min | Binary::Max), a, b) = node else { return None };
+            let (a, b) = (image[a.index()], image[b.index()]);
+            let gap = graph.sub(a, b);
+            Some(if function == Binary::Max { graph.select(gap, a, b) } else { graph.select(gap, b, a) })
+        })
+    }
+
     /// Rebuilds `roots` with nodes replaced, given the images of the nodes below them.
     pub(crate) fn rebuild(
         &mut self,

@@ -312,8 +312,7 @@ impl TileOf<'_> {
             .map(|row| ExplicitRow { time: schedule.time(row), terms: self.terms(row) })
             .collect();
         let last = rows.first().map_or(0.0, |row| row.time);
-        let EventSteps { ends, events } = self.steps_to(last)?;
-        let at_events = events.iter().map(|(step, _)| *step).collect();
+        let (EventSteps { ends, events }, at_events) = self.steps_to(last)?;
         let events = EventAdjoints::new(simulator, &start, events, schedule.time(schedule.rows - 1))?;
         let count = ends.len();
         let steps = ExplicitSteps::new(simulator, &start, ends, at_events, inputs)?;
@@ -335,15 +334,18 @@ impl TileOf<'_> {
         Ok((total, kernel))
     }
 
-    /// The explicit method's steps to a row at a time, s. Lanes are lost of which a row lies behind that up to which
+    /// The explicit method's steps to a row at a time, s, and those that end at events. Lanes are lost of which a row lies behind that up to which
     /// their sample can be followed from event to event.
-    fn steps_to(&mut self, last: f64) -> Result<EventSteps, NoGradient> {
+    fn steps_to(&mut self, last: f64) -> Result<(EventSteps, Vec<usize>), NoGradient> {
         let Self { simulator, schedule, .. } = *self;
         let Some(segments) = schedule.segments() else {
-            let mut ends = schedule.ending_at(Instants::of(simulator)).ends();
+            let schedule = schedule.ending_at(Instants::of(simulator));
+            let mut ends = schedule.ends();
             let needed = ends.partition_point(|&end| end < last) + 1;
             ends.truncate(needed);
-            return Ok(EventSteps { ends, events: Vec::new() });
+            // Instants that are the same in all samples move none of them.
+            let at_events = schedule.at_events().iter().copied().filter(|&step| step < needed).collect();
+            return Ok((EventSteps { ends, events: Vec::new() }, at_events));
         };
         let sample = &self.samples[self.lanes[0].sample];
         let steps = EventSteps::of(simulator, segments, sample, last, schedule.time(schedule.rows - 1))?;
@@ -351,7 +353,8 @@ impl TileOf<'_> {
         for (lane, lost) in self.lanes.iter().zip(&mut self.lost) {
             *lost = (schedule.time(lane.last_row()) > reached).then_some(reached);
         }
-        Ok(steps)
+        let at_events = steps.events.iter().map(|(step, _)| *step).collect();
+        Ok((steps, at_events))
     }
 
     /// Adds the adjoints of the parameters through an equilibrium with which the motion begins.

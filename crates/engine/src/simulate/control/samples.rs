@@ -13,7 +13,7 @@ use crate::simulate::interruption::Interruption;
 use crate::simulate::sampling::{Instants, Sampling};
 use crate::simulate::simulator::Simulator;
 use crate::simulate::step::{LocalError, Stepper};
-use crate::simulate::time_functions::{ResolvingSteps, TimeFunctions};
+use crate::simulate::time_functions::ResolvingSteps;
 
 /// A schedule from a tolerance, and the reason if it ends before the duration.
 #[derive(Clone, Debug, PartialEq)]
@@ -126,7 +126,7 @@ impl<'s> Control<'s> {
         let h = TUNING.first_step * output_step;
         let start = simulator.assemble(width, h, |lane| samples[lane.min(samples.len() - 1)].clone())?;
         let steps = Adaptive::new(simulator, Stepper::new(&simulator.program, &start), controller, h);
-        let functions = TimeFunctions::of(simulator, controller.duration);
+        let functions = simulator.time_functions(controller.duration);
         let functions = functions
             .map(|functions| ResolvingSteps::new(functions, &simulator.system, TUNING.most_steps))
             .transpose()?;

@@ -7,7 +7,7 @@ use super::integration::Integration;
 use serde::{Deserialize, Serialize};
 
 use super::tuning::TUNING;
-use crate::simulate::events::segments::{SegmentMethod, Segments};
+use crate::simulate::events::segments::{EventSchedule, SegmentMethod, Segments};
 
 /// Rows of output, and the steps that lead from row to row.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -92,6 +92,16 @@ impl Schedule {
         Self { output_step, rows, end: duration, steps, integration: Integration::Plain }
     }
 
+    /// Steps that end at the events of all samples.
+    pub fn ending_at_events(duration: f64, output_step: f64, steps: EventSchedule) -> Self {
+        match steps {
+            EventSchedule::Segments(segments) => Self::segmented(duration, output_step, segments),
+            EventSchedule::Instants { ends, at_events } => {
+                Self::passing(duration, output_step, ends, at_events).taken(Integration::Explicit)
+            }
+        }
+    }
+
     /// Steps between the events that all samples meet.
     pub fn segmented(duration: f64, output_step: f64, segments: Segments) -> Self {
         let integration = match segments.method {
@@ -108,6 +118,19 @@ impl Schedule {
             StepList::Segmented(segments) => Some(segments),
             _ => None,
         }
+    }
+
+    /// Indices of the steps that end at events whose times are the same in all samples.
+    pub fn at_events(&self) -> &[usize] {
+        match &self.steps {
+            StepList::Passing { kept, .. } => kept,
+            _ => &[],
+        }
+    }
+
+    /// Whether steps end at events.
+    pub fn ends_at_events(&self) -> bool {
+        self.segments().is_some() || !self.at_events().is_empty()
     }
 
     /// Whether steps pass over rows.

@@ -56,7 +56,7 @@ impl Followed {
     }
 
     /// When a segment begins, s.
-    fn begin(&self, segment: usize) -> f64 {
+    pub fn begin(&self, segment: usize) -> f64 {
         segment.checked_sub(1).map_or(0.0, |before| self.events[before].1)
     }
 
@@ -66,6 +66,17 @@ impl Followed {
         let inner = own.iter().take_while(|&&time| time < end).map(|time| (time - begin) / (end - begin));
         inner.filter(|&share| share < 1.0).chain([1.0]).collect()
     }
+}
+
+/// Whether a sample can be followed beyond a time, s.
+pub(super) fn reaches(mut path: Path, time: f64) -> bool {
+    let mut reached = 0.0;
+    while reached < time {
+        let Ok(step) = path.step(f64::INFINITY) else { return false };
+        path.go_on(step);
+        reached = step.end;
+    }
+    true
 }
 
 /// Whether a sample meets an event before a time, s; `None` if it cannot be followed until that is known.

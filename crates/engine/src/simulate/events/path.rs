@@ -18,6 +18,7 @@ use crate::simulate::explicit::runge_kutta::{RungeKutta, before_event};
 use crate::simulate::features::{FeatureWork, Features, Passage};
 use crate::simulate::simulator::Simulator;
 use crate::simulate::step::Counters;
+use crate::simulate::time_functions::ResolvingSteps;
 
 /// A motion that cannot be followed: it is stiff, not finite, or grazes a switch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,6 +46,7 @@ pub struct Path<'s> {
     start: Vec<f64>,
     features: Option<&'s Features>,
     work: FeatureWork,
+    functions: Option<ResolvingSteps>,
     parameters: Sample,
     /// Largest value of each switch so far.
     sizes: Vec<f64>,
@@ -92,6 +94,7 @@ impl<'s> Path<'s> {
         watch.begin(closure.tile());
         let sizes = (0..program.switches.len()).map(|switch| watch.at_beginning(switch, 0)[0].abs()).collect();
         let movement = Movement::new(&simulator.system.coordinates, duration);
+        let functions = simulator.time_functions(duration);
         Ok(Self {
             closure,
             run,
@@ -100,6 +103,7 @@ impl<'s> Path<'s> {
             start,
             features: simulator.features(),
             work: FeatureWork::default(),
+            functions: functions.map(|functions| ResolvingSteps::between_jumps(&functions, sample)),
             parameters: sample.clone(),
             sizes,
             duration,
@@ -132,7 +136,9 @@ impl<'s> Path<'s> {
             if self.tries > self.most || self.h < TUNING.smallest_step * self.duration {
                 return Err(Lost);
             }
-            let step = self.h.min(TUNING.longest_step * self.duration);
+            let longest = self.h.min(TUNING.longest_step * self.duration);
+            let step = self.functions.as_mut().map_or(longest, |functions| functions.resolving(begin, longest));
+            let is_shortened = step < longest;
             let mut end = if begin + step * (1.0 + 1e-9) >= goal { goal } else { begin + step };
             let step = end - begin;
             let mut ratio = self.attempt(end);
@@ -172,8 +178,8 @@ impl<'s> Path<'s> {
             }
             self.h = match cut {
                 Some((uncut, _)) if event.is_some() => uncut,
-                // A step cut short at the goal is no reason against the longer one.
-                _ if end == goal && step < self.h => self.h,
+                // A step cut short at the goal, or by a function of the time, is no reason against the longer one.
+                _ if is_shortened || end == goal && step < self.h => self.h,
                 _ => self.run.next_length(step, ratio),
             };
             let parts = if self.divides { self.run.parts(end, &self.sizes_of_lines()) } else { 1 };
@@ -357,15 +363,6 @@ impl<'s> Path<'s> {
                 .then_some((time, switch))
         };
         (0..count).filter_map(&mut found).min_by(|a, b| a.0.total_cmp(&b.0))
-    }
-
-    /// Whether it can be followed beyond a time.
-    pub fn reaches(mut self, time: f64) -> bool {
-        while self.run.time() < time {
-            let Ok(step) = self.step(f64::INFINITY) else { return false };
-            self.go_on(step);
-        }
-        true
     }
 
     /// Prepares [`interpolate`](Self::interpolate) in the step that was taken; one that ends at an event is prepared.

@@ -115,6 +115,30 @@ pub struct Segments {
     pub method: SegmentMethod,
 }
 
+/// Steps that end at the events of all samples.
+#[derive(Clone, Debug, PartialEq)]
+pub enum EventSchedule {
+    /// At times that are each sample's own.
+    Segments(Segments),
+    /// At times that are the same in all samples, those of functions of the time.
+    Instants {
+        /// Ends of the steps up to the end of the rows, s.
+        ends: Vec<f64>,
+        /// Indices of those that end at events.
+        at_events: Vec<usize>,
+    },
+}
+
+impl EventSchedule {
+    /// Time up to which events are followed, s.
+    pub fn horizon(&self) -> f64 {
+        match self {
+            Self::Segments(segments) => segments.horizon,
+            Self::Instants { ends, .. } => ends.last().copied().unwrap_or(0.0),
+        }
+    }
+}
+
 impl Segments {
     /// Accuracy and method by which their samples are followed, whatever the steps that they share.
     pub fn following(&self) -> Following {

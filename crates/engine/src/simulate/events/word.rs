@@ -3,9 +3,13 @@
 use rayon::prelude::*;
 
 use super::boundary::{boundaries, grazed_at, margins};
-use super::followed::{Followed, meets_event};
+use super::followed::{Followed, meets_event, reaches};
 use super::path::Path;
-use super::segments::{Boundary, Event, Following, SegmentMethod, Segments, Word, WordsEnd, shares_divided};
+use super::resolved::resolved_word;
+use super::same_instants::{at_instants, same_instants};
+use super::segments::{
+    Boundary, Event, EventSchedule, Following, SegmentMethod, Segments, Word, WordsEnd, shares_divided,
+};
 use super::tuning::TUNING;
 use crate::compile::SwitchProgram;
 use crate::numerics::{ParameterBox, STEP_NODES, Sample};
@@ -13,20 +17,20 @@ use crate::simulate::error::SimulationError;
 use crate::simulate::sampling::Instants;
 use crate::simulate::simulator::Simulator;
 
-/// The words of samples up to a time, if there are events at different instants; `None` where there are none, or they
-/// cannot be followed for a share of the time that is worthwhile. Where the explicit method cannot follow the first,
-/// whose forces may be stiff, the scheme does. Steps of the scheme that is asked for are no longer than `longest`, s.
+/// Steps up to a time that end at the events of samples; `None` where there are none, or they cannot be followed for a
+/// share of the time that is worthwhile. Where the explicit method cannot follow the first, whose forces may be stiff,
+/// the scheme does, if instants differ. Steps of the scheme that is asked for are no longer than `longest`, s.
 ///
 /// # Errors
 /// Where the first sample cannot be assembled.
-pub fn segments_of(
+pub fn cut_at_events(
     simulator: &Simulator,
     domain: &ParameterBox,
     samples: &[Sample],
     duration: f64,
     following: Following,
     longest: Option<f64>,
-) -> Result<Option<Segments>, SimulationError> {
+) -> Result<Option<EventSchedule>, SimulationError> {
     let Some(program) = simulator.switches().filter(|_| can_be_cut(simulator)) else { return Ok(None) };
     let following = match following.method {
         // Rounding of velocities in the scheme is that of positions over a short step.
@@ -42,7 +46,7 @@ pub fn segments_of(
     let kept = |sample: &Sample, followed: Followed| {
         let goes_on = || {
             let has_many = may_end && followed.events.len() >= TUNING.most_events;
-            has_many && path(sample).is_ok_and(|path| path.behind_words().reaches(duration))
+            has_many && path(sample).is_ok_and(|path| reaches(path.behind_words(), duration))
         };
         (followed.known_to >= duration || goes_on()).then_some(followed)
     };
@@ -53,7 +57,7 @@ pub fn segments_of(
     let Some(first) = kept(first, by_first) else {
         let otherwise = has_failed.then(|| methods_for_failed(simulator, program, samples, duration, following));
         for following in otherwise.into_iter().flatten() {
-            if let Some(found) = segments_of(simulator, domain, samples, duration, following, None)? {
+            if let Some(found) = cut_at_events(simulator, domain, samples, duration, following, None)? {
                 return Ok(Some(found));
             }
         }
@@ -95,12 +99,25 @@ pub fn segments_of(
     };
     let boundaries = found.into_iter().map(described).collect();
     let longest = longest.filter(|_| matches!(following.method, SegmentMethod::Scheme { .. }));
-    let words = words.into_iter().zip(&groups).map(|(word, group)| match longest {
-        Some(longest) => divided_word(word, &members(&all, group), longest, horizon),
-        None => word,
+    let functions = simulator.time_functions(duration);
+    let words = words.into_iter().zip(&groups).map(|(word, group)| {
+        let members = members(&all, group);
+        let word = match longest {
+            Some(longest) => divided_word(word, &members, longest, horizon),
+            None => word,
+        };
+        match &functions {
+            Some(functions) => resolved_word(word, &members, horizon, functions),
+            None => Some(word),
+        }
     });
+    let Some(words) = words.collect::<Option<Vec<Word>>>() else { return Ok(None) };
+    if let ([word], Some(instants)) = (&words[..], same_instants(&all, duration)) {
+        let is_explicit = following.method == SegmentMethod::Explicit;
+        return Ok(is_explicit.then(|| at_instants(word, &instants, duration)));
+    }
     let Following { tolerance, method, .. } = following;
-    Ok(Some(Segments { words: words.collect(), boundaries, horizon, end, tolerance, method }))
+    Ok(Some(EventSchedule::Segments(Segments { words, boundaries, horizon, end, tolerance, method })))
 }
 
 /// Ways to follow motions that the explicit method cannot follow: it errs by rounding near rest, and the scheme takes
@@ -191,8 +208,7 @@ fn within_budget(all: &[Followed], duration: f64) -> Option<Found> {
     let is_whole = shortest.known_to >= duration;
     let whole = groups(all, duration);
     if is_whole && whole.len() <= TUNING.most_words {
-        let is_one = whole.len() == 1;
-        let word = |group: Vec<usize>| Some((shared(&members(&group), duration, is_one)?, group));
+        let word = |group: Vec<usize>| Some((shared(&members(&group), duration)?, group));
         return Some((duration, None, whole.into_iter().map(word).collect::<Option<_>>()?));
     }
     let fewest = all.iter().map(|followed| followed.events.len()).min()?;
@@ -209,17 +225,9 @@ fn within_budget(all: &[Followed], duration: f64) -> Option<Found> {
     is_worthwhile(horizon, count, duration).then_some((horizon, Some(end), words))
 }
 
-/// The common word of some motions up to a time, if instants are to differ between them.
-fn shared(all: &[&Followed], end: f64, is_one: bool) -> Option<Word> {
+/// The common word of some motions up to a time.
+fn shared(all: &[&Followed], end: f64) -> Option<Word> {
     let (count, tail) = extent(all, end)?;
-    // Instants that are the same in all samples are kinks in time, none in the parameters.
-    let differs = |event: usize| {
-        let times = || all.iter().map(|followed| followed.events[event].1);
-        times().fold(f64::NEG_INFINITY, f64::max) - times().fold(f64::INFINITY, f64::min) > TUNING.same_instant * end
-    };
-    if all.len() > 1 && is_one && !(0..count).any(differs) {
-        return None;
-    }
     of_extent(all, count, tail, end)
 }
 
@@ -285,7 +293,7 @@ mod tests {
     }
 
     fn spelled(all: &[Followed]) -> Option<Word> {
-        shared(&all.iter().collect::<Vec<_>>(), 1.0, true)
+        shared(&all.iter().collect::<Vec<_>>(), 1.0)
     }
 
     #[test]
@@ -305,11 +313,6 @@ mod tests {
         // Behind the last event of both, and before the next of one.
         let word = spelled(&[followed(&[0.4, 0.99]), followed(&[0.5, 1.01, 1.2])]).unwrap();
         assert_eq!((word.events.len(), word.tail), (2, Some(0.5 * (1.01 + 1.2))));
-    }
-
-    #[test]
-    fn motions_of_the_same_instants_are_not_cut() {
-        assert!(spelled(&[followed(&[0.4]), followed(&[0.4])]).is_none());
     }
 
     #[test]

@@ -11,7 +11,7 @@ use crate::simulate::error::SimulationError;
 use crate::simulate::interruption::Interruption;
 use crate::simulate::sampling::Instants;
 use crate::simulate::simulator::Simulator;
-use crate::simulate::time_functions::{ResolvingSteps, TimeFunctions};
+use crate::simulate::time_functions::ResolvingSteps;
 
 /// Why the explicit method is not for a motion.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -60,7 +60,7 @@ pub fn explicit_schedule(
 ) -> Result<Result<Schedule, ExplicitObstacle>, SimulationError> {
     let mut tiles = Tiles::start(simulator, samples, duration)?;
     let too_many = Ok(Err(ExplicitObstacle::TooManySteps { steps: most }));
-    let functions = TimeFunctions::of(simulator, duration);
+    let functions = simulator.time_functions(duration);
     let functions = functions.map(|functions| ResolvingSteps::new(functions, &simulator.system, most)).transpose();
     let Ok(mut functions) = functions else { return too_many };
     let instants = Instants::of(simulator);

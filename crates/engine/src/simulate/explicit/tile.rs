@@ -6,14 +6,14 @@ use rayon::prelude::*;
 use symdiff::WIDTHS;
 use symdiff::jet::JetSpace;
 
-use super::runge_kutta::RungeKutta;
+use super::runge_kutta::{RungeKutta, before_event};
 use super::tuning::TUNING;
 use crate::assemble::EquationId;
 use crate::numerics::Sample;
 use crate::simulate::control::{Schedule, Steps};
 use crate::simulate::diagnostics::PartingWatch;
 use crate::simulate::drive::{
-    Accumulator, Channel, Observed, RowState, RowTile, Stop, TiledRun, forget_lost, lost_lanes,
+    Accumulator, Channel, MotionSteps as _, Observed, RowState, RowTile, Stop, TiledRun, forget_lost, lost_lanes,
 };
 use crate::simulate::ensemble::{JetBox, JetClosure, RowClosure};
 use crate::simulate::error::SimulationError;
@@ -125,29 +125,27 @@ impl<'s, M: RowState> ExplicitTile<'s, M> {
     }
 
     /// Takes the steps that lead to a time, and interpolates the state there; a step that passes it stays open.
-    fn step_to(&mut self, ends: &[f64], time: f64, asked: &mut StepInterruption<'_>) {
+    fn step_to(&mut self, plan: &StepEnds<'_>, time: f64, asked: &mut StepInterruption<'_>) {
         // `steps` counts the steps that are begun; the last of them is open until a row lies beyond its end.
         while time > self.run.time {
-            let open = self.steps.checked_sub(1).map(|last| ends[last]).filter(|&end| end > self.run.time);
-            let end = match open {
-                Some(end) => end,
+            let open = self.steps.checked_sub(1).filter(|&last| plan.ends[last] > self.run.time);
+            let step = match open {
+                Some(step) => step,
                 None => {
-                    let Some(&end) = ends.get(self.steps) else { break };
+                    if plan.ends.len() == self.steps {
+                        break;
+                    }
                     if asked.ends() {
                         return;
                     }
                     self.steps += 1;
-                    self.run.attempt(&mut self.motion, end);
-                    self.run.finish(&mut self.motion, end);
-                    self.accumulate_step(end);
-                    if time < end {
-                        self.run.prepare_dense(&mut self.motion, end);
-                    }
-                    end
+                    self.attempt(plan, self.steps - 1, time);
+                    self.steps - 1
                 }
             };
+            let end = plan.ends[step];
             if time < end {
-                self.run.interpolate((time - self.run.time) / (end - self.run.time), &mut self.at_row);
+                self.run.interpolate(plan.share_of_dense(step, self.run.time, time), &mut self.at_row);
                 return;
             }
             self.run.accept(&mut self.motion, end);
@@ -155,16 +153,32 @@ impl<'s, M: RowState> ExplicitTile<'s, M> {
         self.at_row.copy_from_slice(&self.run.state);
     }
 
+    /// Tries a step, with dense output if a time lies within it.
+    fn attempt(&mut self, plan: &StepEnds<'_>, step: usize, time: f64) {
+        let end = plan.ends[step];
+        if plan.is_at_event(step) {
+            self.run.attempt_to_event(&mut self.motion, end);
+            self.accumulate_step(plan, step);
+            return;
+        }
+        self.run.attempt(&mut self.motion, end);
+        self.run.finish(&mut self.motion, end);
+        if self.reduction.is_some() || time < end {
+            self.run.prepare_dense(&mut self.motion, end);
+        }
+        self.accumulate_step(plan, step);
+    }
+
     /// Accumulates the reductions of outputs over the step that was tried, if any.
-    fn accumulate_step(&mut self, end: f64) {
+    fn accumulate_step(&mut self, plan: &StepEnds<'_>, step: usize) {
         if self.reduction.is_none() {
             return;
         }
-        self.run.prepare_dense(&mut self.motion, end);
+        let (begin, end) = (self.run.time, plan.ends[step]);
         for part in 1..=TUNING.places_of_reduced {
-            let share = part as f64 / TUNING.places_of_reduced as f64;
-            self.run.interpolate(share, &mut self.at_row);
-            self.accumulate(self.run.time + share * (end - self.run.time));
+            let time = begin + part as f64 / TUNING.places_of_reduced as f64 * (end - begin);
+            self.run.interpolate(plan.share_of_dense(step, begin, time), &mut self.at_row);
+            self.accumulate(time);
         }
     }
 
@@ -194,6 +208,21 @@ impl<'s, M: RowState> ExplicitTile<'s, M> {
 pub(in crate::simulate) struct StepEnds<'p> {
     schedule: &'p Schedule,
     ends: Vec<f64>,
+    at_events: Vec<usize>,
+}
+
+impl StepEnds<'_> {
+    /// Whether a step ends at an event.
+    fn is_at_event(&self, step: usize) -> bool {
+        self.at_events.binary_search(&step).is_ok()
+    }
+
+    /// Share of a step's dense output, from its beginning, that a time within it is; both times in s.
+    fn share_of_dense(&self, step: usize, begin: f64, time: f64) -> f64 {
+        let end = self.ends[step];
+        let end = if self.is_at_event(step) { before_event(begin, end) } else { end };
+        (time - begin) / (end - begin)
+    }
 }
 
 impl<'s, M: RowState + Debug + Send> RowTile<'s> for ExplicitTile<'s, M> {
@@ -201,7 +230,8 @@ impl<'s, M: RowState + Debug + Send> RowTile<'s> for ExplicitTile<'s, M> {
 
     fn plan<'p>(simulator: &Simulator, steps: Steps<'p>) -> StepEnds<'p> {
         let schedule = steps.schedule;
-        StepEnds { schedule, ends: schedule.ending_at(Instants::of(simulator)).ends() }
+        let at_instants = schedule.ending_at(Instants::of(simulator));
+        StepEnds { schedule, ends: at_instants.ends(), at_events: at_instants.at_events().to_vec() }
     }
 
     fn width(&self) -> usize {
@@ -221,7 +251,7 @@ impl<'s, M: RowState + Debug + Send> RowTile<'s> for ExplicitTile<'s, M> {
         if row == 0 {
             self.accumulate(0.0);
         }
-        self.step_to(&plan.ends, time, asked);
+        self.step_to(plan, time, asked);
         if asked.is_cut() {
             return Vec::new();
         }

@@ -5,14 +5,15 @@
 //! of change is bounded over a whole step and the whole box of parameters, in interval arithmetic: where a function may
 //! change by more than its own size within a step, or be switched twice, the step is divided.
 //!
-//! `terms` finds the functions, `resolution` examines them over an interval of time, `resolving_steps` steps along with
-//! them.
+//! `terms` finds the functions, `enclosed` encloses one, `resolution` examines all over an interval of time,
+//! `resolving_steps` steps along with them.
 
+mod enclosed;
 mod resolution;
 mod resolving_steps;
 mod terms;
 pub(crate) mod tuning;
 
+pub(in crate::simulate) use enclosed::Work;
 pub use resolution::TimeFunctions;
-pub(in crate::simulate) use resolution::Work;
 pub(in crate::simulate) use resolving_steps::ResolvingSteps;

@@ -2,14 +2,17 @@
 //! they jump.
 
 use std::f64::consts::TAU;
+use std::sync::Arc;
 
-use symdiff::{Expr, Graph, Interval, Ranges};
+use symdiff::{Expr, Interval, Ranges};
 
+use super::enclosed::{Work, pair, size};
 use super::terms::{Condition, functions};
 use super::tuning::TUNING;
-use crate::assemble::UncertainParameter;
+use crate::assemble::{System, UncertainParameter};
+use crate::compile::Layout;
+use crate::numerics::Sample;
 use crate::simulate::diagnostics::written;
-use crate::simulate::simulator::Simulator;
 
 /// The functions of the time in a mechanism's equations of motion.
 #[derive(Clone, Debug)]
@@ -18,24 +21,10 @@ pub struct TimeFunctions {
     duration: f64,
     /// Intervals of the parameters.
     parameters: Vec<Interval>,
-    terms: Vec<Term>,
-    switches: Vec<Switch>,
+    terms: Arc<[Term]>,
+    switches: Arc<[Switch]>,
     /// Most halvings of a step.
     halvings: u32,
-}
-
-/// Memory for enclosures, and their number.
-#[derive(Clone, Debug, Default)]
-pub(in crate::simulate) struct Work {
-    intervals: Vec<Interval>,
-    enclosures: usize,
-}
-
-impl Work {
-    /// Functions that were enclosed over a box.
-    pub(in crate::simulate) fn enclosures(&self) -> usize {
-        self.enclosures
-    }
 }
 
 /// A function that steps do not resolve.
@@ -83,16 +72,21 @@ enum Switches {
 
 impl TimeFunctions {
     /// Finds the functions of a mechanism over its box of parameters; `None` if no equation of motion depends on the
-    /// time.
-    pub fn of(simulator: &Simulator, duration: f64) -> Option<Self> {
-        let mut functions = functions(simulator)?;
-        let system = &simulator.system;
+    /// time. The nominal start has the layout's registers.
+    pub(in crate::simulate) fn of(
+        system: &System,
+        layout: &Layout,
+        nominal_start: &[f64],
+        duration: f64,
+    ) -> Option<Self> {
+        let mut functions = functions(system, layout, nominal_start)?;
         let symbols: Vec<Expr> =
             std::iter::once(system.time).chain(system.parameters.iter().map(|parameter| parameter.symbol)).collect();
         let graph = &mut functions.graph;
         let mut with_rate = |of: Expr| {
-            let rate = graph.derivative(of, system.time);
-            (ranges_of(graph, &symbols, [of, rate]), written(graph, of))
+            let by_choices = graph.with_choices(&[of])[0];
+            let [rate, of_choices] = [of, by_choices].map(|of| graph.derivative(of, system.time));
+            (Ranges::new(graph, &symbols, &[of, rate, of_choices]), written(graph, of))
         };
         // One realisation of a random excitation is as fast as another.
         let interval = |own: &UncertainParameter| match own.is_seed {
@@ -115,8 +109,13 @@ impl TimeFunctions {
         let switches: Vec<Switch> = functions.conditions.into_iter().map(switch).collect();
         let halvings =
             if system.constraint.is_empty() { TUNING.most_halvings } else { TUNING.most_halvings_with_constraints };
-        let found = Self { duration, parameters, terms, switches, halvings };
+        let found = Self { duration, parameters, terms: terms.into(), switches: switches.into(), halvings };
         (!(found.terms.is_empty() && found.switches.is_empty())).then_some(found)
+    }
+
+    /// The same functions of one sample.
+    pub(in crate::simulate) fn of_sample(&self, sample: &Sample) -> Self {
+        Self { parameters: sample.iter().map(|&value| Interval::point(value)).collect(), ..self.clone() }
     }
 
     /// Most halvings of a step.
@@ -127,7 +126,71 @@ impl TimeFunctions {
     /// Whether steps of length h resolve every function from a to b, which may change by `share` of its size within a
     /// step.
     pub(in crate::simulate) fn are_resolved(&self, (a, b): (f64, f64), h: f64, share: f64, work: &mut Work) -> bool {
-        self.terms.iter().all(|term| term.is_slow(self, (a, b), h, share, work)) && self.jumps_are_apart(a, b, h, work)
+        self.are_slow((a, b), h, share, work) && self.jumps_are_apart(a, b, h, work)
+    }
+
+    /// The same of steps that end at jumps: a jump may be missed only if there are two of the same function.
+    pub(in crate::simulate) fn are_resolved_between_jumps(
+        &self,
+        (a, b): (f64, f64),
+        h: f64,
+        share: f64,
+        work: &mut Work,
+    ) -> bool {
+        let symbols = self.over(a, b);
+        let is_grazed = h <= TUNING.coinciding_jumps * self.duration;
+        let mut is_known = |switch: &Switch| is_grazed || switch.over(&symbols, work) != Switches::Unknown;
+        self.switches.iter().all(&mut is_known) && self.are_slow((a, b), h, share, work)
+    }
+
+    /// Whether no function changes by more than `share` of its size within steps of length h from a to b.
+    pub(in crate::simulate) fn are_slow(&self, span: (f64, f64), h: f64, share: f64, work: &mut Work) -> bool {
+        self.terms.iter().all(|term| term.is_slow(self, span, h, share, work))
+    }
+
+    /// The same as [`are_slow`](Self::are_slow) where times and parameters are taken part by part: a pulse at an uncertain
+    /// time is fast in a part of them only.
+    pub(in crate::simulate) fn are_slow_in_parts(&self, span: (f64, f64), h: f64, share: f64, work: &mut Work) -> bool {
+        let mut parts = vec![self.over(span.0, span.1)];
+        let mut seen = 0;
+        while let Some(symbols) = parts.pop() {
+            if self.are_slow_over(&symbols, h, share, work) {
+                continue;
+            }
+            seen += 1;
+            let middle: Vec<Interval> = symbols.iter().map(|own| Interval::point(own.middle())).collect();
+            if seen == TUNING.most_parts_of_box || !self.are_slow_over(&middle, h, share, work) {
+                return false;
+            }
+            // The symbol is halved without which the rates are least.
+            let at_middle = |&index: &usize| {
+                let mut symbols = symbols.clone();
+                symbols[index] = middle[index];
+                symbols
+            };
+            let uncertain = (0..symbols.len()).filter(|&index| symbols[index].upper() > symbols[index].lower());
+            let by_share = uncertain.map(|index| (index, self.share_of_step(&at_middle(&index), h, work)));
+            let Some((index, _)) = by_share.min_by(|a, b| a.1.total_cmp(&b.1)) else { return false };
+            let (range, middle) = (symbols[index], middle[index].middle());
+            for half in [Interval::new(range.lower(), middle), Interval::new(middle, range.upper())] {
+                let mut symbols = symbols.clone();
+                symbols[index] = half;
+                parts.push(symbols);
+            }
+        }
+        true
+    }
+
+    /// Largest change of a function within a step of length h, as a share of its size.
+    fn share_of_step(&self, symbols: &[Interval], h: f64, work: &mut Work) -> f64 {
+        self.terms.iter().map(|term| term.over(symbols, work).1.magnitude() * h / term.size).fold(0.0, f64::max)
+    }
+
+    /// Whether no function changes by more than `share` of its size within a step of length h.
+    fn are_slow_over(&self, symbols: &[Interval], h: f64, share: f64, work: &mut Work) -> bool {
+        let span = (symbols[0].lower(), symbols[0].upper());
+        let part = Self { parameters: symbols[1..].to_vec(), ..self.clone() };
+        part.are_slow(span, h, share, work)
     }
 
     /// The functions that steps of length h do not resolve from a time on: the first of them as a formula, its
@@ -287,60 +350,5 @@ impl Switch {
         let (first, last) = (at(symbols[0].lower()), at(symbols[0].upper()));
         let surely = first.upper() < 0.0 && last.lower() > 0.0 || first.lower() > 0.0 && last.upper() < 0.0;
         Switches::Once { surely }
-    }
-}
-
-fn ranges_of(graph: &Graph, symbols: &[Expr], roots: [Expr; 2]) -> Ranges {
-    Ranges::new(graph, symbols, &roots)
-}
-
-fn pair(ranges: &Ranges, symbols: &[Interval], work: &mut Work) -> (Interval, Interval) {
-    work.enclosures += 1;
-    let mut found = ranges.enclose(symbols, &mut work.intervals);
-    let mut next = || found.next().unwrap_or(Interval::ENTIRE);
-    (next(), next())
-}
-
-/// Half the width of the range of a function over the duration, to a factor of two; `None` if it is constant, or has no
-/// bound.
-fn size(ranges: &Ranges, parameters: &[Interval], nominal: &[f64], duration: f64) -> Option<f64> {
-    let mut work = Work::default();
-    let mut over = |a: f64, b: f64| {
-        let symbols: Vec<Interval> = std::iter::once(Interval::new(a, b)).chain(parameters.iter().copied()).collect();
-        pair(ranges, &symbols, &mut work).0
-    };
-    let mut at_work = Work::default();
-    let mut at = |t: f64| {
-        let point: Vec<Interval> = std::iter::once(t).chain(nominal.iter().copied()).map(Interval::point).collect();
-        pair(ranges, &point, &mut at_work).0.middle()
-    };
-    let (mut least, mut most) = (at(0.0).min(at(duration)), at(0.0).max(at(duration)));
-    let mut pieces = vec![(0.0, duration, over(0.0, duration))];
-    let mut width = f64::INFINITY;
-    while pieces.len() < TUNING.pieces_for_size {
-        let extreme = |sign: f64| {
-            let end = |piece: &(f64, f64, Interval)| if sign > 0.0 { piece.2.upper() } else { -piece.2.lower() };
-            let index = (0..pieces.len()).max_by(|&i, &j| end(&pieces[i]).total_cmp(&end(&pieces[j])));
-            index.map(|index| (index, end(&pieces[index])))
-        };
-        let (Some((lowest, lower)), Some((highest, upper))) = (extreme(-1.0), extreme(1.0)) else { break };
-        width = upper + lower;
-        if width <= 2.0 * (most - least) {
-            break;
-        }
-        // The piece that may go furthest beyond the values known to be reached.
-        let index = if upper - most > least + lower { highest } else { lowest };
-        let (a, b, _) = pieces.swap_remove(index);
-        let middle = 0.5 * (a + b);
-        (least, most) = (least.min(at(middle)), most.max(at(middle)));
-        pieces.extend([(a, middle, over(a, middle)), (middle, b, over(middle, b))]);
-    }
-    let negligible = |width: f64| width <= 1e-12 * least.abs().max(most.abs());
-    match most - least {
-        seen if !seen.is_finite() => None,
-        seen if !negligible(seen) => Some(0.5 * seen),
-        // The values show no change, but the enclosure allows one.
-        _ if width.is_finite() && !negligible(width) => Some(0.5 * width),
-        _ => None,
     }
 }

@@ -1,18 +1,23 @@
 //! One step after another that resolves the functions of the time, within a number of enclosures: functions with very
 //! short periods are refused in words, before hours go by.
 
-use super::resolution::{TimeFunctions, Work};
+use super::enclosed::Work;
+use super::resolution::TimeFunctions;
 use super::tuning::TUNING;
 use crate::assemble::System;
+use crate::numerics::Sample;
 use crate::simulate::diagnostics::place_of;
 use crate::simulate::error::SimulationError;
 
 /// The steps of a run.
+#[derive(Debug)]
 pub(in crate::simulate) struct ResolvingSteps {
     functions: TimeFunctions,
     work: Work,
     /// The last step that was shortened.
     last: Option<f64>,
+    /// Whether steps end at jumps, which are looked for.
+    end_at_jumps: bool,
 }
 
 impl ResolvingSteps {
@@ -25,9 +30,14 @@ impl ResolvingSteps {
         system: &System,
         most: usize,
     ) -> Result<Self, SimulationError> {
-        let mut found = Self { functions, work: Work::default(), last: None };
+        let mut found = Self { functions, work: Work::default(), last: None, end_at_jumps: false };
         found.refuse_too_many(system, most)?;
         Ok(found)
+    }
+
+    /// For a sample whose steps end at jumps.
+    pub(in crate::simulate) fn between_jumps(functions: &TimeFunctions, sample: &Sample) -> Self {
+        Self { functions: functions.of_sample(sample), work: Work::default(), last: None, end_at_jumps: true }
     }
 
     fn refuse_too_many(&mut self, system: &System, most: usize) -> Result<(), SimulationError> {
@@ -54,7 +64,12 @@ impl ResolvingSteps {
     fn resolved_step(&mut self, from: f64, step: f64, mut h: f64, halvings: u32) -> f64 {
         for _ in 0..halvings {
             let share = if h < step { TUNING.resolved } else { TUNING.too_fast };
-            if self.functions.are_resolved((from, from + h), h, share, &mut self.work) {
+            let (functions, span) = (&self.functions, (from, from + h));
+            let are_resolved = match self.end_at_jumps {
+                true => functions.are_resolved_between_jumps(span, h, share, &mut self.work),
+                false => functions.are_resolved(span, h, share, &mut self.work),
+            };
+            if are_resolved {
                 break;
             }
             h *= 0.5;
@@ -77,6 +92,11 @@ impl ResolvingSteps {
             let short = self.last.unwrap_or(step);
             return Err(self.too_fast(system, from, short, 0));
         }
+        Ok(self.resolving(from, step))
+    }
+
+    /// The same, however long the search takes.
+    pub(in crate::simulate) fn resolving(&mut self, from: f64, step: f64) -> f64 {
         let (mut h, mut halvings) = (step, self.functions.halvings());
         let most = self.last.map_or(f64::INFINITY, |last| TUNING.growth_of_steps * last * (1.0 + 1e-9));
         while h > most && halvings > 0 {
@@ -85,7 +105,7 @@ impl ResolvingSteps {
         }
         let h = self.resolved_step(from, step, h, halvings);
         self.last = Some(h).filter(|&h| h < step);
-        Ok(h)
+        h
     }
 
     /// Error for a step that is as long as the functions allow: steps of twice its length do not resolve them.

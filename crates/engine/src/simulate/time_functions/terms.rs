@@ -7,7 +7,8 @@ use std::f64::consts::PI;
 use rustc_hash::{FxHashMap, FxHashSet};
 use symdiff::{Binary, Expr, Graph, Node, Unary};
 
-use crate::simulate::simulator::Simulator;
+use crate::assemble::System;
+use crate::compile::Layout;
 
 /// Functions of the time, over the symbols of `graph`.
 pub(super) struct Functions {
@@ -28,22 +29,21 @@ struct Dependence {
 }
 
 /// The functions of the time in the equations of motion; `None` where there are none.
-pub(super) fn functions(simulator: &Simulator) -> Option<Functions> {
-    let system = &simulator.system;
+pub(super) fn functions(system: &System, layout: &Layout, nominal_start: &[f64]) -> Option<Functions> {
     if !system.depends_on_time() {
         return None;
     }
     let roots = system.of_motion();
     let mut graph = system.graph.clone();
-    let (mut whole, frozen) = maximal(&graph, simulator, &roots);
-    let (prescribed, more_frozen) = maximal(&graph, simulator, &system.constraint);
+    let (mut whole, frozen) = maximal(&graph, system, &roots);
+    let (prescribed, more_frozen) = maximal(&graph, system, &system.constraint);
     // Accelerations follow the second derivatives of prescribed positions.
     for &position in &prescribed {
         let velocity = graph.derivative(position, system.time);
         whole.push(graph.derivative(velocity, system.time));
     }
     whole.extend(prescribed);
-    let start = at_start(&mut graph, simulator);
+    let start = at_start(&mut graph, system, layout, nominal_start);
     let frozen: Vec<Expr> = frozen.into_iter().chain(more_frozen).collect();
     let frozen = graph.substitute(&frozen, &start);
     let terms = summands(&graph, system.time, &whole);
@@ -57,8 +57,7 @@ pub(super) fn functions(simulator: &Simulator) -> Option<Functions> {
 
 /// The largest subexpressions of time and parameters alone; and the smallest nonlinear functions of both time and
 /// state.
-fn maximal(graph: &Graph, simulator: &Simulator, roots: &[Expr]) -> (Vec<Expr>, Vec<Expr>) {
-    let system = &simulator.system;
+fn maximal(graph: &Graph, system: &System, roots: &[Expr]) -> (Vec<Expr>, Vec<Expr>) {
     let parameters: FxHashSet<Expr> = system.parameters.iter().map(|parameter| parameter.symbol).collect();
     let mut known: FxHashMap<Expr, Dependence> = FxHashMap::default();
     let (mut whole, mut frozen) = (Vec::new(), Vec::new());
@@ -100,14 +99,13 @@ fn is_nonlinear(node: Node, known: &FxHashMap<Expr, Dependence>) -> bool {
 }
 
 /// The state's symbols with their values at the nominal start.
-fn at_start(graph: &mut Graph, simulator: &Simulator) -> FxHashMap<Expr, Expr> {
-    let (system, layout) = (&simulator.system, &simulator.program.layout);
+fn at_start(graph: &mut Graph, system: &System, layout: &Layout, nominal_start: &[f64]) -> FxHashMap<Expr, Expr> {
     let blocks =
         [(&system.q, &layout.q), (&system.v, &layout.v), (&system.w, &layout.w), (&system.lambda, &layout.lambda)];
     let mut values = FxHashMap::default();
     for (symbols, registers) in blocks {
         for (&symbol, register) in symbols.iter().zip(registers.clone()) {
-            values.insert(symbol, graph.constant(simulator.nominal[register]));
+            values.insert(symbol, graph.constant(nominal_start[register]));
         }
     }
     values

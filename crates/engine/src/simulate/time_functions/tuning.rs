@@ -28,7 +28,8 @@ tuning! {
         parts_of_step: usize = 16, moves "the steps of runs with functions of time";
         /// Cuts of a quarter by which a jump is located.
         most_cuts: usize = 120, moves "the steps of runs with functions of time";
-        /// Most parts of the box of parameters that are examined to find how often a step is switched.
+        /// Most parts of the box of parameters that are examined to find how often a step is switched, or how fast a
+        /// function is.
         most_parts_of_box: usize = 300, moves "the steps of runs with functions of time";
         /// Most times that a part of the box of parameters is halved to find how often a step is switched.
         deepest_part: u32 = 14, moves "the steps of runs with functions of time";

@@ -185,7 +185,7 @@ fn summary(study: &Study, results: Results, bounds: &Bounds, failures: &[Note]) 
     let before = |row: usize| schedule.time(row.saturating_sub(1));
     let unmet_switch = results.bounded.unmet_switch_from().map(before);
     let is_fixed = matches!(study.description.simulation.stepping, Stepping::Fixed(_));
-    let passed_force = results.bounded.passed_from().filter(|_| is_fixed && schedule.segments().is_none()).map(before);
+    let passed_force = results.bounded.passed_from().filter(|_| is_fixed && !schedule.ends_at_events()).map(before);
     let singular =
         results.singular.iter().map(|pass| SingularSummary { time: pass.time, constraints: names(&pass.constraints) });
     Summary {

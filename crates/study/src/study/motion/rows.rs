@@ -13,7 +13,7 @@ use crate::model::{Analysis, Description, ModesRequest, Stepping};
 use crate::numerics::{ParameterBox, Sample};
 use crate::simulate::{
     Controller, Following, Integration, Interruption, Observed, Schedule, SegmentMethod, SegmentRun, SimulationError,
-    Simulator, Steps, TimeFunctions, integrator, schedule_for_tolerance, segments_of,
+    Simulator, Steps, cut_at_events, integrator, schedule_for_tolerance,
 };
 
 /// A model with other outputs in place of its own.
@@ -210,12 +210,12 @@ impl<'a> MotionRows<'a> {
         }
         let (duration, output_step) = (description.simulation.duration, description.simulation.output_step);
         let following = Following { tolerance: TUNING.event_error, method: SegmentMethod::Explicit, of_steps: None };
-        let found = segments_of(&self.simulator, &self.domain, controlling(samples), duration, following, None)?;
+        let found = cut_at_events(&self.simulator, &self.domain, controlling(samples), duration, following, None)?;
         let rows = Schedule::rows_of(duration, output_step);
         let finer = (TUNING.rows_between_events / rows).max(1).ilog2();
         let dense = output_step / f64::from(1 << finer);
-        let whole = found.filter(|segments| segments.horizon >= duration);
-        Ok(whole.map(|segments| Schedule::segmented(duration, dense, segments)))
+        let whole = found.filter(|steps| steps.horizon() >= duration);
+        Ok(whole.map(|steps| Schedule::ending_at_events(duration, dense, steps)))
     }
 
     /// The steps: those between events, the model's, or those that its tolerance asks for at the nominal sample and
@@ -243,7 +243,7 @@ impl<'a> MotionRows<'a> {
                 (found.schedule, Some(Controller { tolerance, duration }))
             }
         };
-        let functions = TimeFunctions::of(&self.simulator, duration);
+        let functions = self.simulator.time_functions(duration);
         let schedule = functions.map_or_else(|| schedule.clone(), |functions| functions.divided(&schedule).schedule);
         Ok(StepPlan { schedule, controller })
     }

@@ -28,7 +28,7 @@ pub fn balance(study: &Study, plan: &StepPlan, progress: &Progress) -> Result<Ba
     let needs_motion = |(_, method): &(Method, &dyn BoundingMethod)| method.observes(&problem) == Observed::Motion;
     let motion = study.request.methods().iter().any(needs_motion);
     let observed = if motion { Observed::Motion } else { Observed::Outputs };
-    let is_open = may_be_explicit(study) && !has_tighter_steps(study) && plan.schedule.segments().is_none();
+    let is_open = may_be_explicit(study) && !has_tighter_steps(study) && !plan.schedule.ends_at_events();
     if let Some(allowed) = study.request.tolerance.filter(|_| is_open) {
         match balance_explicit(study, &plan.schedule, allowed, observed, progress)? {
             Ok((schedule, validation)) => {

@@ -8,7 +8,7 @@ use crate::numerics::{Sample, spread};
 use crate::results::{EventSummary, EventsFollowed, MethodSummary};
 use crate::simulate::{
     Boundary, Counters, Following, Integration, Schedule, SegmentMethod, SimulationError, SwitchSearch, WordsEnd,
-    segments_of,
+    cut_at_events,
 };
 use crate::study::bounding::Switches;
 use crate::study::problem::{Study, problem};
@@ -42,7 +42,7 @@ pub fn segmented_samples(study: &Study, samples: &[Sample]) -> Result<Option<Sch
 /// Whether motions are cut up to their end.
 fn lasts(study: &Study, schedule: &Schedule) -> bool {
     let duration = study.description.simulation.duration;
-    schedule.segments().is_some_and(|segments| segments.horizon >= duration)
+    schedule.segments().is_none_or(|segments| segments.horizon >= duration)
 }
 
 /// Steps of the explicit method between the events of the nominal motion, if there are any and it can follow it,
@@ -85,8 +85,8 @@ fn segments_of_samples(
         Stepping::Tolerance(_) => None,
         Stepping::Fixed(step) => Some(step),
     };
-    let segments = segments_of(&study.simulator, &study.domain, samples, duration, following, longest)?;
-    Ok(segments.map(|segments| Schedule::segmented(duration, output_step, segments)))
+    let found = cut_at_events(&study.simulator, &study.domain, samples, duration, following, longest)?;
+    Ok(found.map(|steps| Schedule::ending_at_events(duration, output_step, steps)))
 }
 
 /// The search for events, as a line of the summary: no sample met others.

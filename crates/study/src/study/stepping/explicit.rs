@@ -1,7 +1,7 @@
 //! Whether the explicit method is taken, and with which steps.
 
 use super::controlled::{controlling_samples, steps_error};
-use super::validated::{may_extrapolate, validation};
+use super::validated::{may_extrapolate, typical_steps, validation};
 use crate::study::bounding::validation_summary;
 use crate::study::ensemble::Progress;
 use crate::study::problem::Study;
@@ -154,9 +154,7 @@ pub fn explicit_within(
     tolerance: f64,
     samples: &[Sample],
 ) -> Result<Result<Schedule, Obstacle>, SimulationError> {
-    let simulation = &study.description.simulation;
-    let step = TUNING.typical_step.min(simulation.output_step);
-    let base = Schedule::fixed(simulation.duration, step, simulation.output_step);
+    let base = typical_steps(&study.description.simulation);
     let judge = |_, schedule: &Schedule| {
         let plan = StepPlan::fixed(schedule.clone());
         Ok(Ok((steps_error(study, &plan, samples)? / tolerance, ())))
@@ -201,11 +199,7 @@ pub fn integration_decision(description: &Description, simulator: &Simulator) ->
                 .to_owned(),
         ));
     }
-    let step = match simulation.stepping {
-        Stepping::Fixed(step) => step,
-        Stepping::Tolerance(_) => TUNING.typical_step.min(simulation.output_step),
-    };
-    let base = Schedule::fixed(simulation.duration, step, simulation.output_step);
+    let base = typical_steps(simulation);
     let nominal: Sample = simulator.system.parameters.iter().map(|parameter| parameter.nominal).collect();
     let most = TUNING.explicit_further_steps + base.steps_before(base.rows - 1);
     Some(
@@ -221,6 +215,7 @@ pub fn integration_decision(description: &Description, simulator: &Simulator) ->
             Ok(Ok(schedule)) => {
                 let steps = schedule.steps_before(schedule.rows - 1);
                 let (explicit, plain) = (explicit_work(simulator, &schedule), plain_work(simulator, &base));
+                let step = base.first_step();
                 let why = format!(
                     "not stiff: about {steps} steps and {explicit} instructions for the nominal sample, where HHT-I3 with steps of {step} s \
                  takes {plain}"

@@ -1,6 +1,7 @@
 //! The search for contacts and kinks in the equations that no sample meets, as a part of a study.
 
 use super::events::event_search;
+use super::validated::{divided, typical_steps};
 use crate::study::bounding::Switches;
 use crate::study::internal::{InternalError, caught};
 use crate::study::problem::Study;
@@ -25,10 +26,14 @@ pub fn switches(
     }
     (study.stage)("searching for switches");
     let begun = Instant::now();
-    let at_rows = steps.schedule.ending_at_rows();
-    let steps = Steps { schedule: &at_rows, ..steps };
+    // Steps between events are too long for the scheme.
+    let at_rows = match steps.schedule.ends_at_events() {
+        true => divided(study, typical_steps(&study.description.simulation)).schedule,
+        false => steps.schedule.ending_at_rows(),
+    };
+    let by_scheme = Steps { schedule: &at_rows, ..steps };
     let found = caught("the search for switches", || {
-        unmet_switch(&study.simulator, &study.domain, steps, &validation.points, study.interruption)
+        unmet_switch(&study.simulator, &study.domain, by_scheme, &validation.points, study.interruption)
     });
     let found = match found {
         Ok(found) => found?,
@@ -45,7 +50,7 @@ pub fn switches(
         let summary = MethodSummary {
             method: "switches".to_owned(),
             simulations: found.simulations,
-            steps: steps.schedule.steps_before(steps.schedule.rows - 1),
+            steps: at_rows.steps_before(at_rows.rows - 1),
             newton_iterations: found.counters.iterations,
             rank_revealing_solves: found.counters.rank_revealing,
             order: None,

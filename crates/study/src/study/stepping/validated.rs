@@ -7,6 +7,7 @@ use crate::simulate::{Divided, ExcitedMode, Integration, Schedule, SimulationErr
 use crate::study::bounding::simulation_error;
 use crate::study::ensemble::Progress;
 use crate::study::problem::Study;
+use crate::study::stepping::tuning::TUNING;
 
 /// Integration of the steps if no tolerance determines it.
 pub fn integration(study: &Study) -> Integration {
@@ -14,6 +15,15 @@ pub fn integration(study: &Study) -> Integration {
         SchemeChoice::Explicit => Integration::Explicit,
         _ => Integration::of_levels(study.description.simulation.extrapolation.unwrap_or(1)),
     }
+}
+
+/// Steps of the model; those that are typical if a tolerance determines them.
+pub fn typical_steps(simulation: &Simulation) -> Schedule {
+    let step = match simulation.stepping {
+        Stepping::Fixed(step) => step,
+        Stepping::Tolerance(_) => TUNING.typical_step.min(simulation.output_step),
+    };
+    Schedule::fixed(simulation.duration, step, simulation.output_step)
 }
 
 /// Whether a tolerance may choose levels of extrapolation.
