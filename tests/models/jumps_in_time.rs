@@ -1,5 +1,5 @@
-//! Forces that jump at times which are the same for all samples: all of them share steps that end there, by the explicit
-//! method. Truths are closed forms.
+//! Forces that jump at times which are the same for all samples: all of them share steps that end there, by the
+//! explicit method. Truths are closed forms.
 
 use mbint::results::{Method, OutputBounds};
 

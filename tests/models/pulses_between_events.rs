@@ -1,5 +1,5 @@
-//! Short pulses of a force in time, in motions that are cut at events: steps between events resolve them, although
-//! segments begin at other times in other samples.
+//! Short pulses of a force in time, and short bumps in space, in motions that are cut at events: steps between events
+//! resolve them, although samples meet them at other times of their segments.
 
 use mbint::results::Method;
 
@@ -69,8 +69,8 @@ fn a_pulse_between_events_is_not_passed_over() {
     }
 }
 
-/// A mass that is pushed for 60 µs, at a time that is known to 0.3 ms: the push is over before it begins in other samples.
-/// Its impulse is 4 F D/3, whenever it acts.
+/// A mass that is pushed for 60 µs, at a time that is known to 0.3 ms: the push is over before it begins in other
+/// samples. Its impulse is 4 F D/3, whenever it acts.
 #[test]
 fn a_pulse_at_an_uncertain_time_is_resolved() {
     let text = "
@@ -93,6 +93,39 @@ bounds: { chebyshev: { order: 4 }, scan: { points: 5 } }
                 let off = (end - speed * (time - begin).max(0.0)).abs();
                 assert!(off <= own.error.total[row] + 1e-12, "{method:?}, {time} s: {off:e}");
                 assert!(own.error.total[row] < 1e-9, "{method:?}, {time} s: {:e}", own.error.total[row]);
+            }
+        }
+    }
+}
+
+/// A falling ball passes over a bump of a force in space, N, whose work is a √π s. Its energy says what its speed is
+/// before it meets the floor.
+#[test]
+fn a_bump_before_an_event_is_not_passed_over() {
+    for width in [2e-3, 2e-4] {
+        let text = format!(
+            "
+parameters: {{ m: {{ interval: [0.98, 1.02] }}, h0: {{ interval: [0.99, 1.01] }} }}
+bodies: {{ b: {{ mass: m, coordinates: [y] }} }}
+effects:
+  f: {{ force: {{ on: b, value: [0, \"-m*9.81 - 1e5*min(b.y, 0) + {}*exp(-((b.y - 0.5)/{width})^2)\"] }} }}
+initial: {{ b.y: h0, b.vy: 0 }}
+outputs: {{ gained: \"m*(b.vy^2/2 + 9.81*(b.y - h0))\" }}
+simulation: {{ duration: 0.7, step: 5e-4, output_step: 0.02 }}
+bounds: {{ chebyshev: {{ order: 4 }}, scan: {{ points: 5 }} }}
+",
+            1.0 / width
+        );
+        let (bounds, summary) = ran(study_of(&text));
+        assert!(summary.integration.is_some_and(|name| name.contains("between events")));
+        for method in [Method::Chebyshev, Method::Scan] {
+            let own = band(output(&bounds, "gained"), method);
+            let is_beside = |time: f64| time < 0.31 || (0.33..0.43).contains(&time);
+            for (row, &time) in bounds.times.iter().enumerate().filter(|(_, time)| is_beside(**time)) {
+                let truth = if time > 0.32 { -ROOT_OF_PI } else { 0.0 };
+                let off = (own.lower[row] - truth).abs().max((own.upper[row] - truth).abs());
+                assert!(off <= own.error.total[row] + 1e-12, "{width}, {method:?}, {time} s: {off:e}");
+                assert!(own.error.total[row] < 1e-5, "{width}, {method:?}, {time} s: {:e}", own.error.total[row]);
             }
         }
     }

@@ -334,8 +334,8 @@ impl TileOf<'_> {
         Ok((total, kernel))
     }
 
-    /// The explicit method's steps to a row at a time, s, and those that end at events. Lanes are lost of which a row lies behind that up to which
-    /// their sample can be followed from event to event.
+    /// The explicit method's steps to a row at a time, s, and those that end at events. Lanes are lost of which a row
+    /// lies behind that up to which their sample can be followed from event to event.
     fn steps_to(&mut self, last: f64) -> Result<(EventSteps, Vec<usize>), NoGradient> {
         let Self { simulator, schedule, .. } = *self;
         let Some(segments) = schedule.segments() else {

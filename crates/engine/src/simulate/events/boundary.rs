@@ -6,7 +6,8 @@
 
 use rayon::prelude::*;
 
-use super::path::{Lost, Path, PathStep};
+use super::path::Path;
+use super::path_step::{Lost, PathStep};
 use super::segments::{Boundary, Event, Word};
 use super::tuning::TUNING;
 use crate::numerics::LeastSquares;

@@ -1,6 +1,7 @@
 //! The events of one sample that is followed alone, and the word that it spells.
 
-use super::path::{Lost, Path};
+use super::path::Path;
+use super::path_step::Lost;
 use super::segments::{Event, Segments, Word, divided};
 use super::tuning::TUNING;
 
@@ -9,6 +10,8 @@ use super::tuning::TUNING;
 pub(super) struct Followed {
     pub events: Vec<(Event, f64)>,
     pub steps: Vec<Vec<f64>>,
+    /// Beginnings and ends of steps in which features of forces in space act, s, in the order of time.
+    pub featured: Vec<[f64; 2]>,
     /// Time up to which it could be followed, s.
     pub known_to: f64,
 }
@@ -19,6 +22,9 @@ impl Followed {
         let (mut followed, mut ends) = (Self::default(), Vec::new());
         while followed.known_to < reach && followed.events.len() < TUNING.most_events {
             let Ok(step) = path.step(reach) else { break };
+            if path.meets_feature(step) {
+                followed.featured.push([step.begin, step.end]);
+            }
             path.go_on(step);
             ends.extend(divided(&[step.begin, step.end], step.parts));
             followed.known_to = step.end;

@@ -5,7 +5,7 @@
 //!
 //! - `locate`: where a function of the time changes its sign within a step;
 //! - `segments`: the words of a box, the steps between their events, and the boundaries between words;
-//! - `path`: one sample, whose steps end at events, and `followed`: its word;
+//! - `path`: one sample, whose steps end at events, `path_step`: a step, and `followed`: its word;
 //! - `scheme_steps`: steps of HHT-I3 for motions that are stiff, and `level_stepper`: those of one level;
 //! - `word`: the words of some samples, `resolved`: their steps, and `boundary`: the surfaces between them;
 //! - `same_instants`: steps that end at events whose times are the same in all samples;
@@ -20,6 +20,7 @@ mod level_stepper;
 pub(in crate::simulate) mod locate;
 mod nodes;
 mod path;
+mod path_step;
 mod resolved;
 mod rows;
 mod run;

@@ -4,6 +4,7 @@
 //! unknown, by Newton's method on the switch's value and rate at the step's end. It ends beyond the event by so little
 //! that the next step begins on the event's other side.
 
+use super::path_step::{Lost, PathStep};
 use super::scheme_steps::SchemeSteps;
 use super::segments::{Event, Following, SegmentMethod};
 use super::tuning::TUNING;
@@ -19,22 +20,6 @@ use crate::simulate::features::{FeatureWork, Features, Passage};
 use crate::simulate::simulator::Simulator;
 use crate::simulate::step::Counters;
 use crate::simulate::time_functions::ResolvingSteps;
-
-/// A motion that cannot be followed: it is stiff, not finite, or grazes a switch.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Lost;
-
-/// A step that was taken.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PathStep {
-    /// Its beginning and its end, s.
-    pub begin: f64,
-    pub end: f64,
-    /// The event at its end.
-    pub event: Option<Event>,
-    /// Equal parts into which others, who take it too, have to divide it.
-    pub parts: usize,
-}
 
 /// One sample on its way.
 #[derive(Debug)]
@@ -276,10 +261,24 @@ impl<'s> Path<'s> {
 
     /// Whether the step that was tried passes over a feature of a force in space.
     fn passes_over(&mut self, begin: f64, end: f64) -> bool {
+        self.has_features(begin, end, Features::are_hidden)
+    }
+
+    /// Whether a feature of a force in space acts in the step that was taken.
+    pub fn meets_feature(&mut self, step: PathStep) -> bool {
+        self.has_features(step.begin, step.end, Features::act)
+    }
+
+    fn has_features(
+        &mut self,
+        begin: f64,
+        end: f64,
+        has: fn(&Features, Passage<'_>, &mut FeatureWork) -> bool,
+    ) -> bool {
         let Some(features) = self.features else { return false };
         let states = [self.run.state(), self.run.next()];
         let passage = Passage { end, h: end - begin, parameters: &self.parameters, states, width: 1, lane: 0 };
-        features.are_hidden(passage, &mut self.work)
+        has(features, passage, &mut self.work)
     }
 
     /// The first switch that crosses in the step that was tried, and when, as a share of it.

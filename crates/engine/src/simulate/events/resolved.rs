@@ -1,5 +1,5 @@
-//! Steps of words that resolve the functions of the time. Each sample follows steps that do so; but these steps are
-//! shares of segments that begin and end at other times in other samples.
+//! Steps of words that resolve the functions of the time, and features of forces in space. Each sample follows steps
+//! that do so; but these steps are shares of segments that begin and end at other times in other samples.
 
 use super::followed::Followed;
 use super::segments::Word;
@@ -9,7 +9,15 @@ use crate::simulate::time_functions::{TimeFunctions, Work};
 
 /// A word of some motions up to a time, with those of its steps halved that do not resolve a function wherever they lie
 /// between the earliest and the latest of the motions; `None` if there would be too many.
-pub(super) fn resolved_word(word: Word, all: &[&Followed], end: f64, functions: &TimeFunctions) -> Option<Word> {
+pub(super) fn resolved_word(
+    word: Word,
+    all: &[&Followed],
+    end: f64,
+    functions: Option<&TimeFunctions>,
+) -> Option<Word> {
+    if functions.is_none() && all.iter().all(|own| own.featured.is_empty()) {
+        return Some(word);
+    }
     let mut work = Work::default();
     let mut left = TUNING.most_steps;
     let mut steps = Vec::with_capacity(word.steps.len());
@@ -18,7 +26,12 @@ pub(super) fn resolved_word(word: Word, all: &[&Followed], end: f64, functions: 
         let segments: Vec<(f64, f64)> =
             all.iter().map(|own| (own.begin(segment), own.length(segment, reach))).collect();
         let length = segments.iter().map(|(_, length)| *length).fold(0.0, f64::max);
+        let windows = windows(all, &segments);
         let mut is_resolved = |[first, last]: [f64; 2], share: f64| {
+            if windows.iter().any(|window| window.is_passed_by([first, last])) {
+                return false;
+            }
+            let Some(functions) = functions else { return true };
             let times = |share: f64| segments.iter().map(move |(begin, length)| begin + share * length);
             let span = (times(first).fold(f64::INFINITY, f64::min), times(last).fold(0.0, f64::max));
             functions.are_slow_in_parts(span, (last - first) * length, share, &mut work)
@@ -47,6 +60,55 @@ pub(super) fn resolved_word(word: Word, all: &[&Followed], end: f64, functions: 
         steps.push(graded.iter().rev().map(|part| part.ends[1]).collect());
     }
     Some(Word { steps, ..word })
+}
+
+/// A part of a segment in which features of forces in space act in some sample.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Window {
+    /// Its beginning and its end, as shares of the segment.
+    ends: [f64; 2],
+    /// Shortest step that a sample takes there, as a share of its segment.
+    shortest: f64,
+}
+
+impl Window {
+    /// The least window that holds both.
+    fn or(self, other: Self) -> Self {
+        let ends = [self.ends[0].min(other.ends[0]), self.ends[1].max(other.ends[1])];
+        Self { ends, shortest: self.shortest.min(other.shortest) }
+    }
+
+    /// Whether a step between two shares is too long there.
+    fn is_passed_by(self, [first, last]: [f64; 2]) -> bool {
+        let is_beside = last <= self.ends[0] || self.ends[1] <= first;
+        !is_beside && last - first > TIME_FUNCTIONS.growth_of_steps * self.shortest
+    }
+}
+
+/// The windows of a segment, given its beginning and its length in each motion: each from the first sample to the last,
+/// if all meet the same number of features one after the other, else one of all.
+fn windows(all: &[&Followed], segments: &[(f64, f64)]) -> Vec<Window> {
+    let of_motion = |(own, &(begin, length)): (&&Followed, &(f64, f64))| {
+        let mut found: Vec<Window> = Vec::new();
+        for step in &own.featured {
+            let ends = step.map(|time| (time - begin) / length);
+            if ends[1] <= 0.0 || ends[0] >= 1.0 {
+                continue;
+            }
+            let step = Window { ends, shortest: ends[1] - ends[0] };
+            match found.last_mut().filter(|last| last.ends[1] >= ends[0]) {
+                Some(last) => *last = last.or(step),
+                None => found.push(step),
+            }
+        }
+        found
+    };
+    let of_motions: Vec<Vec<Window>> = all.iter().zip(segments).map(of_motion).collect();
+    let count = of_motions.first().map_or(0, Vec::len);
+    if of_motions.iter().any(|own| own.len() != count) {
+        return of_motions.into_iter().flatten().reduce(Window::or).into_iter().collect();
+    }
+    (0..count).filter_map(|number| of_motions.iter().map(|own| own[number]).reduce(Window::or)).collect()
 }
 
 /// A step, or a part of one.

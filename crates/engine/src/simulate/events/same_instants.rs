@@ -42,7 +42,7 @@ mod tests {
     /// Events at these times.
     fn followed(times: &[f64]) -> Followed {
         let events = times.iter().map(|&time| (Event { switch: 0, rises: true }, time)).collect();
-        Followed { events, steps: Vec::new(), known_to: TUNING.followed_share }
+        Followed { events, known_to: TUNING.followed_share, ..Followed::default() }
     }
 
     #[test]

@@ -9,7 +9,8 @@ use std::collections::VecDeque;
 
 use super::followed::Spelled;
 use super::nodes;
-use super::path::{Path, PathStep};
+use super::path::Path;
+use super::path_step::PathStep;
 use super::scheme_steps::SchemeSteps;
 use super::segments::{SegmentMethod, Segments, Word};
 use super::stretched::Stretched;

@@ -106,10 +106,7 @@ pub fn cut_at_events(
             Some(longest) => divided_word(word, &members, longest, horizon),
             None => word,
         };
-        match &functions {
-            Some(functions) => resolved_word(word, &members, horizon, functions),
-            None => Some(word),
-        }
+        resolved_word(word, &members, horizon, functions.as_ref())
     });
     let Some(words) = words.collect::<Option<Vec<Word>>>() else { return Ok(None) };
     if let ([word], Some(instants)) = (&words[..], same_instants(&all, duration)) {
@@ -289,7 +286,7 @@ mod tests {
         let begins = std::iter::once(0.0).chain(times.iter().copied());
         let ends = times.iter().copied().chain([TUNING.followed_share]);
         let steps = begins.zip(ends).map(|(begin, end)| vec![0.5 * (begin + end), end]).collect();
-        Followed { events, steps, known_to: TUNING.followed_share }
+        Followed { events, steps, known_to: TUNING.followed_share, ..Followed::default() }
     }
 
     fn spelled(all: &[Followed]) -> Option<Word> {

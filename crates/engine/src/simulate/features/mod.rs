@@ -114,14 +114,31 @@ impl Features {
         ranges.any(|(range, function)| range.upper() - range.lower() > share * function.whole)
     }
 
-    /// Whether the ends of a step hide the course of functions between them.
-    pub fn are_hidden(&self, passage: Passage, work: &mut FeatureWork) -> bool {
-        let FeatureWork { path, symbols: [between, begin, end, part], values, wide } = work;
+    /// Whether a function that forces use changes within a step by as much as its ends may hide.
+    pub fn act(&self, passage: Passage, work: &mut FeatureWork) -> bool {
+        self.find_wide(passage, work);
+        let FeatureWork { path, symbols: [.., part], values, wide } = work;
+        wide.iter().any(|&index| {
+            let function = &self.functions[index];
+            let range = function.along(path, [0.0, 1.0], TUNING.halvings_of_path, part, values);
+            range.is_some_and(|range| !function.is_narrow(range))
+        })
+    }
+
+    /// Finds the functions that change by much over a whole step, as far as an enclosure of both ends shows.
+    fn find_wide(&self, passage: Passage, work: &mut FeatureWork) {
+        let FeatureWork { path, symbols: [between, ..], values, wide } = work;
         path.take(passage, &self.layout);
         path.between([0.0, 1.0], between);
         wide.clear();
         let ranges = self.ranges.enclose(between, values).zip(&self.functions).enumerate();
         wide.extend(ranges.filter(|(_, (range, function))| !function.is_narrow(*range)).map(|(index, _)| index));
+    }
+
+    /// Whether the ends of a step hide the course of functions between them.
+    pub fn are_hidden(&self, passage: Passage, work: &mut FeatureWork) -> bool {
+        self.find_wide(passage, work);
+        let FeatureWork { path, symbols: [_, begin, end, part], values, wide } = work;
         if wide.is_empty() {
             return false;
         }

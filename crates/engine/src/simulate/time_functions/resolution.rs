@@ -132,15 +132,15 @@ impl TimeFunctions {
     /// The same of steps that end at jumps: a jump may be missed only if there are two of the same function.
     pub(in crate::simulate) fn are_resolved_between_jumps(
         &self,
-        (a, b): (f64, f64),
+        span: (f64, f64),
         h: f64,
         share: f64,
         work: &mut Work,
     ) -> bool {
-        let symbols = self.over(a, b);
+        let symbols = self.over(span.0, span.1);
         let is_grazed = h <= TUNING.coinciding_jumps * self.duration;
         let mut is_known = |switch: &Switch| is_grazed || switch.over(&symbols, work) != Switches::Unknown;
-        self.switches.iter().all(&mut is_known) && self.are_slow((a, b), h, share, work)
+        self.switches.iter().all(&mut is_known) && self.are_slow(span, h, share, work)
     }
 
     /// Whether no function changes by more than `share` of its size within steps of length h from a to b.
@@ -148,8 +148,8 @@ impl TimeFunctions {
         self.terms.iter().all(|term| term.is_slow(self, span, h, share, work))
     }
 
-    /// The same as [`are_slow`](Self::are_slow) where times and parameters are taken part by part: a pulse at an uncertain
-    /// time is fast in a part of them only.
+    /// The same as [`are_slow`](Self::are_slow) where times and parameters are taken part by part: a pulse at an
+    /// uncertain time is fast in a part of them only.
     pub(in crate::simulate) fn are_slow_in_parts(&self, span: (f64, f64), h: f64, share: f64, work: &mut Work) -> bool {
         let mut parts = vec![self.over(span.0, span.1)];
         let mut seen = 0;
