@@ -4,6 +4,7 @@
 use super::followed::Followed;
 use super::segments::Word;
 use super::tuning::TUNING;
+use crate::numerics::Sample;
 use crate::simulate::time_functions::tuning::TUNING as TIME_FUNCTIONS;
 use crate::simulate::time_functions::{TimeFunctions, Work};
 
@@ -12,6 +13,7 @@ use crate::simulate::time_functions::{TimeFunctions, Work};
 pub(super) fn resolved_word(
     word: Word,
     all: &[&Followed],
+    samples: &[&Sample],
     end: f64,
     functions: Option<&TimeFunctions>,
 ) -> Option<Word> {
@@ -27,11 +29,19 @@ pub(super) fn resolved_word(
             all.iter().map(|own| (own.begin(segment), own.length(segment, reach))).collect();
         let length = segments.iter().map(|(_, length)| *length).fold(0.0, f64::max);
         let windows = windows(all, &segments);
+        // A pulse between two events moves with them, and changes in no other segment.
+        let inner = |&(begin, length): &(f64, f64)| {
+            let margin = TUNING.rounded_instant * (begin + length);
+            (begin + margin, begin + length - margin)
+        };
+        let spans: Vec<(f64, f64)> = segments.iter().map(inner).collect();
+        let of_samples = || samples.iter().copied().zip(spans.iter().copied()).filter(|(_, (a, b))| a < b);
+        let functions = functions.map(|functions| functions.changing(of_samples(), &mut work));
         let mut is_resolved = |[first, last]: [f64; 2], share: f64| {
             if windows.iter().any(|window| window.is_passed_by([first, last])) {
                 return false;
             }
-            let Some(functions) = functions else { return true };
+            let Some(functions) = &functions else { return true };
             let times = |share: f64| segments.iter().map(move |(begin, length)| begin + share * length);
             let span = (times(first).fold(f64::INFINITY, f64::min), times(last).fold(0.0, f64::max));
             functions.are_slow_in_parts(span, (last - first) * length, share, &mut work)

@@ -106,7 +106,8 @@ pub fn cut_at_events(
             Some(longest) => divided_word(word, &members, longest, horizon),
             None => word,
         };
-        resolved_word(word, &members, horizon, functions.as_ref())
+        let samples: Vec<&Sample> = group.iter().map(|&sample| &samples[sample]).collect();
+        resolved_word(word, &members, &samples, horizon, functions.as_ref())
     });
     let Some(words) = words.collect::<Option<Vec<Word>>>() else { return Ok(None) };
     if let ([word], Some(instants)) = (&words[..], same_instants(&all, duration)) {

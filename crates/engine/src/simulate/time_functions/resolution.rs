@@ -118,6 +118,22 @@ impl TimeFunctions {
         Self { parameters: sample.iter().map(|&value| Interval::point(value)).collect(), ..self.clone() }
     }
 
+    /// Those of the functions that change within some time, s, of one of some samples.
+    pub(in crate::simulate) fn changing<'a>(
+        &self,
+        samples: impl Iterator<Item = (&'a Sample, (f64, f64))> + Clone,
+        work: &mut Work,
+    ) -> Self {
+        let mut changes = |term: &&Term| {
+            samples.clone().any(|(sample, (a, b))| {
+                let symbols = self.of_sample(sample).over(a, b);
+                term.over(&symbols, work).1.magnitude() * (b - a) > f64::EPSILON * term.size
+            })
+        };
+        let terms = self.terms.iter().filter(&mut changes).cloned().collect();
+        Self { terms, ..self.clone() }
+    }
+
     /// Most halvings of a step.
     pub(in crate::simulate) fn halvings(&self) -> u32 {
         self.halvings
