@@ -86,3 +86,30 @@ bounds: { chebyshev: { order: 3 } }
         assert!((curve(&bounds, "v")[row] - velocity).abs() < 1e-12, "{time} s");
     }
 }
+
+/// Only 128 events are followed: a force that jumps more often is known up to there, or with an error that holds.
+#[test]
+fn rows_behind_the_last_event_that_is_followed_are_not_those_before() {
+    for frequency in [205.0, 300.0] {
+        let text = format!(
+            "
+parameters: {{ m: {{ interval: [0.98, 1.02] }} }}
+bodies: {{ b: {{ mass: m, coordinates: [x] }} }}
+effects: {{ f: {{ force: {{ on: b, value: [\"1 + sign(sin({frequency}*t + 0.3))\", 0] }} }} }}
+initial: {{ b.x: 0, b.vx: 0 }}
+outputs: {{ v: b.vx }}
+simulation: {{ duration: 2, step: 0.002, output_step: 0.1 }}
+bounds: {{ chebyshev: {{ order: 3 }} }}
+"
+        );
+        let (bounds, _) = ran(study_of(&text));
+        let own = band(output(&bounds, "v"), Method::Chebyshev);
+        let (period, begin) = (2.0 * std::f64::consts::PI / frequency, 0.3 / frequency);
+        let since_zero = |time: f64| (time / period).floor() * period + 2.0 * (time % period).min(0.5 * period);
+        for (row, &time) in bounds.times.iter().enumerate().filter(|(row, _)| !own.error.unresolved[*row]) {
+            let impulse = since_zero(begin + time) - since_zero(begin);
+            let off = (own.lower[row] - impulse / 1.02).abs().max((own.upper[row] - impulse / 0.98).abs());
+            assert!(off <= own.error.total[row] + 1e-12, "{frequency}, {time} s: {off:e}");
+        }
+    }
+}

@@ -110,7 +110,8 @@ pub fn cut_at_events(
         resolved_word(word, &members, &samples, horizon, functions.as_ref())
     });
     let Some(words) = words.collect::<Option<Vec<Word>>>() else { return Ok(None) };
-    if let ([word], Some(instants)) = (&words[..], same_instants(&all, duration)) {
+    let instants = if end.is_none() { same_instants(&all, duration) } else { None };
+    if let ([word], Some(instants)) = (&words[..], instants) {
         let is_explicit = following.method == SegmentMethod::Explicit;
         return Ok(is_explicit.then(|| at_instants(word, &instants, duration)));
     }
