@@ -17,6 +17,7 @@ use crate::assemble::{OutputId, System};
 use crate::compile::{Layout, Scheme, StartProgram, compile_nearest_start, compile_start};
 use crate::model::Analysis;
 use crate::numerics::Sample;
+
 /// A mechanism that is assembled at its nominal parameters.
 #[derive(Clone, Debug)]
 pub struct Assembled {

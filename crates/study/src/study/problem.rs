@@ -9,7 +9,7 @@ use super::{Options, RunError, zones};
 use crate::methods::{BoundsRequest, Problem, Refusal, can_compose};
 use crate::model::{Description, SchemeChoice, Stepping};
 use crate::numerics::ParameterBox;
-use crate::simulate::{Interruption, Schedule, Simulator, Steps, TimeFunctions};
+use crate::simulate::{Interruption, Schedule, Simulator, Steps};
 
 /// A compiled subsystem, and its questions.
 pub(super) struct Study<'a> {
@@ -17,8 +17,6 @@ pub(super) struct Study<'a> {
     pub(super) simulator: Simulator,
     pub(super) domain: ParameterBox,
     pub(super) request: BoundsRequest,
-    /// Functions of the time in the equations of motion, if there are any.
-    pub(super) time_functions: Option<TimeFunctions>,
     /// Whether all samples are simulated with halved steps too.
     pub(super) certify_time: bool,
     /// Whether derivatives at the nominal parameters are wanted.
@@ -77,15 +75,12 @@ impl<'a> Study<'a> {
             return Err(Refusal(why.to_owned()).into());
         }
         let Options { certify_time, derivatives, progress, stage, interrupted, .. } = *options;
-        let has_steps = !simulator.system.analysis.is_without_steps();
-        let time_functions = if has_steps { simulator.time_functions(description.simulation.duration) } else { None };
         let store = OnceLock::new();
         Ok(Self {
             description,
             simulator,
             domain,
             request,
-            time_functions,
             certify_time,
             derivatives,
             store,
@@ -101,19 +96,8 @@ impl<'a> Study<'a> {
     pub(super) fn over<'b>(&'b self, part: &ParameterBox, progress: &'b (dyn Fn(f64) + Sync)) -> Study<'b> {
         let mut request = self.request.clone();
         request.methods_mut().into_iter().for_each(|(_, method)| method.restrict(part, &self.domain));
-        let (simulator, time_functions) = (self.simulator.clone(), self.time_functions.clone());
-        let (store, source) = (OnceLock::new(), self.source.clone());
-        Study {
-            domain: part.clone(),
-            derivatives: false,
-            request,
-            progress,
-            simulator,
-            time_functions,
-            store,
-            source,
-            ..*self
-        }
+        let (simulator, store, source) = (self.simulator.clone(), OnceLock::new(), self.source.clone());
+        Study { domain: part.clone(), derivatives: false, request, progress, simulator, store, source, ..*self }
     }
 
     /// Rows of output that are asked for.

@@ -15,7 +15,7 @@ use crate::simulate::drive::MotionSteps;
 use crate::simulate::ensemble::RowClosure;
 use crate::simulate::error::SimulationError;
 use crate::simulate::explicit::movement::Movement;
-use crate::simulate::explicit::runge_kutta::{RungeKutta, before_event};
+use crate::simulate::explicit::runge_kutta::{RungeKutta, before_event, end_of_stages};
 use crate::simulate::features::{FeatureWork, Features, Passage};
 use crate::simulate::simulator::Simulator;
 use crate::simulate::step::Counters;
@@ -373,7 +373,7 @@ impl<'s> Path<'s> {
 
     /// Positions and velocities (2n) at a time within the step that was taken.
     pub fn interpolate(&self, step: PathStep, time: f64, into: &mut [f64]) {
-        let end = if step.event.is_some() { before_event(step.begin, step.end) } else { step.end };
+        let end = end_of_stages(step.begin, step.end, step.event.is_some());
         self.run.interpolate((time - step.begin) / (end - step.begin), into);
     }
 

@@ -24,7 +24,7 @@ pub(super) fn resolved_word(
     let mut left = TUNING.most_steps;
     let mut steps = Vec::with_capacity(word.steps.len());
     for (segment, ends) in word.steps.iter().enumerate() {
-        let reach = if segment < word.events.len() { f64::INFINITY } else { word.tail.unwrap_or(end) };
+        let reach = word.reach(segment, end);
         let segments: Vec<(f64, f64)> =
             all.iter().map(|own| (own.begin(segment), own.length(segment, reach))).collect();
         let length = segments.iter().map(|(_, length)| *length).fold(0.0, f64::max);

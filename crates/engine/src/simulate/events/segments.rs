@@ -35,6 +35,13 @@ pub struct Word {
     pub steps: Vec<Vec<f64>>,
 }
 
+impl Word {
+    /// Time at which a segment ends that has no event, if the rows end at `end`, s; later for those that have one.
+    pub fn reach(&self, segment: usize, end: f64) -> f64 {
+        if segment < self.events.len() { f64::INFINITY } else { self.tail.unwrap_or(end) }
+    }
+}
+
 /// A surface in the box on which an event is just grazed: words on its one side have it, on its other side not.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Boundary {

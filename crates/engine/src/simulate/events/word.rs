@@ -149,7 +149,7 @@ fn methods_for_failed(
 /// A word of some motions up to a time, of which no step of the scheme is longer than `longest`, s.
 fn divided_word(word: Word, all: &[&Followed], longest: f64, end: f64) -> Word {
     let of_segment = |(segment, ends): (usize, &Vec<f64>)| {
-        let reach = if segment < word.events.len() { f64::INFINITY } else { word.tail.unwrap_or(end) };
+        let reach = word.reach(segment, end);
         let length = all.iter().map(|own| own.length(segment, reach)).filter(|own| own.is_finite()).fold(0.0, f64::max);
         let least = (length / ((STEP_NODES - 1) as f64 * longest)).ceil() as usize;
         if ends.len() < least { shares_divided(ends, least) } else { ends.clone() }

@@ -2,7 +2,7 @@
 
 use symdiff::Tile;
 
-use super::runge_kutta::{RungeKutta, before_event};
+use super::runge_kutta::{RungeKutta, end_of_stages};
 use crate::simulate::adjoint::{Stepping, TileInputs};
 use crate::simulate::drive::MotionSteps as _;
 use crate::simulate::ensemble::RowClosure;
@@ -48,8 +48,7 @@ impl<'s> ExplicitSteps<'s> {
 
     /// When its stages end, s.
     pub(super) fn inner(&self, step: usize) -> f64 {
-        let end = self.ends[step];
-        if self.at_events.contains(&step) { before_event(self.begin(step), end) } else { end }
+        end_of_stages(self.begin(step), self.ends[step], self.at_events.contains(&step))
     }
 }
 

@@ -55,6 +55,11 @@ pub(in crate::simulate) fn before_event(begin: f64, end: f64) -> f64 {
     end - TUNING.before_event * (end - begin)
 }
 
+/// End of the stages, and of the dense output, of a step that may end at an event.
+pub(in crate::simulate) fn end_of_stages(begin: f64, end: f64, is_at_event: bool) -> f64 {
+    if is_at_event { before_event(begin, end) } else { end }
+}
+
 impl RungeKutta {
     /// Starts from a state.
     pub fn start(motion: &mut impl Motion, time: f64, state: Vec<f64>) -> Self {

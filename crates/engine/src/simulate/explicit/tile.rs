@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use symdiff::WIDTHS;
 use symdiff::jet::JetSpace;
 
-use super::runge_kutta::{RungeKutta, before_event};
+use super::runge_kutta::{RungeKutta, end_of_stages};
 use super::tuning::TUNING;
 use crate::assemble::EquationId;
 use crate::numerics::Sample;
@@ -219,8 +219,7 @@ impl StepEnds<'_> {
 
     /// Share of a step's dense output, from its beginning, that a time within it is; both times in s.
     fn share_of_dense(&self, step: usize, begin: f64, time: f64) -> f64 {
-        let end = self.ends[step];
-        let end = if self.is_at_event(step) { before_event(begin, end) } else { end };
+        let end = end_of_stages(begin, self.ends[step], self.is_at_event(step));
         (time - begin) / (end - begin)
     }
 }

@@ -121,13 +121,14 @@ impl TimeFunctions {
     /// Those of the functions that change within some time, s, of one of some samples.
     pub(in crate::simulate) fn changing<'a>(
         &self,
-        samples: impl Iterator<Item = (&'a Sample, (f64, f64))> + Clone,
+        samples: impl Iterator<Item = (&'a Sample, (f64, f64))>,
         work: &mut Work,
     ) -> Self {
+        let boxes: Vec<Vec<Interval>> = samples.map(|(sample, (a, b))| self.of_sample(sample).over(a, b)).collect();
         let mut changes = |term: &&Term| {
-            samples.clone().any(|(sample, (a, b))| {
-                let symbols = self.of_sample(sample).over(a, b);
-                term.over(&symbols, work).1.magnitude() * (b - a) > f64::EPSILON * term.size
+            boxes.iter().any(|symbols| {
+                let rate = term.over(symbols, work).1.magnitude();
+                rate * (symbols[0].upper() - symbols[0].lower()) > f64::EPSILON * term.size
             })
         };
         let terms = self.terms.iter().filter(&mut changes).cloned().collect();
@@ -161,7 +162,7 @@ impl TimeFunctions {
 
     /// Whether no function changes by more than `share` of its size within steps of length h from a to b.
     pub(in crate::simulate) fn are_slow(&self, span: (f64, f64), h: f64, share: f64, work: &mut Work) -> bool {
-        self.terms.iter().all(|term| term.is_slow(self, span, h, share, work))
+        self.are_slow_over(&self.over(span.0, span.1), h, share, work)
     }
 
     /// The same as [`are_slow`](Self::are_slow) where times and parameters are taken part by part: a pulse at an
@@ -179,20 +180,11 @@ impl TimeFunctions {
                 return false;
             }
             // The symbol is halved without which the rates are least.
-            let at_middle = |&index: &usize| {
-                let mut symbols = symbols.clone();
-                symbols[index] = middle[index];
-                symbols
-            };
+            let at_middle = |index: usize| with(&symbols, index, middle[index]);
             let uncertain = (0..symbols.len()).filter(|&index| symbols[index].upper() > symbols[index].lower());
-            let by_share = uncertain.map(|index| (index, self.share_of_step(&at_middle(&index), h, work)));
+            let by_share = uncertain.map(|index| (index, self.share_of_step(&at_middle(index), h, work)));
             let Some((index, _)) = by_share.min_by(|a, b| a.1.total_cmp(&b.1)) else { return false };
-            let (range, middle) = (symbols[index], middle[index].middle());
-            for half in [Interval::new(range.lower(), middle), Interval::new(middle, range.upper())] {
-                let mut symbols = symbols.clone();
-                symbols[index] = half;
-                parts.push(symbols);
-            }
+            parts.extend(halves(&symbols, index));
         }
         true
     }
@@ -204,16 +196,14 @@ impl TimeFunctions {
 
     /// Whether no function changes by more than `share` of its size within a step of length h.
     fn are_slow_over(&self, symbols: &[Interval], h: f64, share: f64, work: &mut Work) -> bool {
-        let span = (symbols[0].lower(), symbols[0].upper());
-        let part = Self { parameters: symbols[1..].to_vec(), ..self.clone() };
-        part.are_slow(span, h, share, work)
+        self.terms.iter().all(|term| term.is_slow(symbols, h, share, work))
     }
 
     /// The functions that steps of length h do not resolve from a time on: the first of them as a formula, its
     /// expression, and its period, s, as far as its rate or its jumps determine it.
     pub(super) fn first_unresolved(&self, from: f64, h: f64, work: &mut Work) -> Option<Unresolved<'_>> {
         let symbols = self.over(from, from + h);
-        let term = self.terms.iter().find(|term| !term.is_slow(self, (from, from + h), h, TUNING.resolved, work));
+        let term = self.terms.iter().find(|term| !term.is_slow(&symbols, h, TUNING.resolved, work));
         if let Some(term) = term {
             let (_, rate) = term.over(&symbols, work);
             let period = if rate.magnitude().is_finite() { TAU * term.size / rate.magnitude() } else { h };
@@ -233,6 +223,7 @@ impl TimeFunctions {
     pub(super) fn duration(&self) -> f64 {
         self.duration
     }
+
     /// The symbols' intervals for a span of time.
     fn over(&self, a: f64, b: f64) -> Vec<Interval> {
         std::iter::once(Interval::new(a, b)).chain(self.parameters.iter().copied()).collect()
@@ -283,15 +274,23 @@ impl TimeFunctions {
             let Some(index) = splits.filter(|&index| symbols[index].upper() > symbols[index].lower()) else {
                 return false;
             };
-            let (range, middle) = (symbols[index], symbols[index].middle());
-            for half in [Interval::new(range.lower(), middle), Interval::new(middle, range.upper())] {
-                let mut symbols = symbols.clone();
-                symbols[index] = half;
-                boxes.push((symbols, depth + 1));
-            }
+            boxes.extend(halves(&symbols, index).map(|half| (half, depth + 1)));
         }
         true
     }
+}
+
+/// A box with another interval of one symbol.
+fn with(symbols: &[Interval], index: usize, interval: Interval) -> Vec<Interval> {
+    let mut symbols = symbols.to_vec();
+    symbols[index] = interval;
+    symbols
+}
+
+/// Halves of a box along one symbol.
+fn halves(symbols: &[Interval], index: usize) -> [Vec<Interval>; 2] {
+    let (range, middle) = (symbols[index], symbols[index].middle());
+    [Interval::new(range.lower(), middle), Interval::new(middle, range.upper())].map(|half| with(symbols, index, half))
 }
 
 impl Term {
@@ -300,22 +299,25 @@ impl Term {
         pair(&self.ranges, symbols, work)
     }
 
-    fn is_slow(&self, all: &TimeFunctions, (a, b): (f64, f64), h: f64, share: f64, work: &mut Work) -> bool {
-        let (_, rate) = self.over(&all.over(a, b), work);
+    /// Whether it changes by no more than `share` of its size within steps of length h over a box.
+    fn is_slow(&self, symbols: &[Interval], h: f64, share: f64, work: &mut Work) -> bool {
+        let (_, rate) = self.over(symbols, work);
         if rate.magnitude().is_finite() {
             return rate.magnitude() * h <= share * self.size;
         }
+        let (a, b) = (symbols[0].lower(), symbols[0].upper());
         if b - a > 1.5 * h {
             return false;
         }
+        let during = |a: f64, b: f64| with(symbols, 0, Interval::new(a, b));
         // A rate without bound, as that of a root where it begins: the criterion is how far the value goes beyond those
         // at the ends.
-        let [first, last] = [a, b].map(|t| self.over(&all.over(t, t), work).0);
+        let [first, last] = [a, b].map(|t| self.over(&during(t, t), work).0);
         let beyond = share * self.size;
         let (least, most) = (first.lower().min(last.lower()) - beyond, first.upper().max(last.upper()) + beyond);
         let part = |part: usize| a + (b - a) * part as f64 / TUNING.parts_of_step as f64;
         let within = (0..TUNING.parts_of_step).all(|index| {
-            let (value, _) = self.over(&all.over(part(index), part(index + 1)), work);
+            let (value, _) = self.over(&during(part(index), part(index + 1)), work);
             least <= value.lower() && value.upper() <= most
         });
         // Elsewhere in the state it may have one.
@@ -326,7 +328,7 @@ impl Term {
 impl Switch {
     /// Switches other than the jump that `other` causes, which counts by itself: before it and after it.
     fn beside(&self, other: &Self, symbols: &[Interval], work: &mut Work) -> Switches {
-        let during = |a: f64, b: f64| [&[Interval::new(a, b)], &symbols[1..]].concat();
+        let during = |a: f64, b: f64| with(symbols, 0, Interval::new(a, b));
         let (first, last) = (symbols[0].lower(), symbols[0].upper());
         let (mut low, mut high) = (first, last);
         for _ in 0..TUNING.most_cuts {
@@ -358,11 +360,7 @@ impl Switch {
         if rate.contains(0.0) {
             return Switches::Unknown;
         }
-        let mut at = |t: f64| {
-            let point: Vec<Interval> =
-                std::iter::once(Interval::point(t)).chain(symbols[1..].iter().copied()).collect();
-            pair(&self.ranges, &point, work).0
-        };
+        let mut at = |t: f64| pair(&self.ranges, &with(symbols, 0, Interval::point(t)), work).0;
         let (first, last) = (at(symbols[0].lower()), at(symbols[0].upper()));
         let surely = first.upper() < 0.0 && last.lower() > 0.0 || first.lower() > 0.0 && last.upper() < 0.0;
         Switches::Once { surely }

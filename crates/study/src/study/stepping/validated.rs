@@ -41,9 +41,10 @@ pub fn may_leave_scheme(study: &Study) -> bool {
 
 /// A schedule with those steps divided that do not resolve a function of the time.
 pub fn divided(study: &Study, schedule: Schedule) -> Divided {
-    match &study.time_functions {
-        // Those have been resolved as they were chosen.
-        _ if schedule.passes_rows() => Divided { schedule, unresolved_from: None },
+    // Steps that pass over rows have resolved them as they were chosen.
+    let is_resolved = schedule.passes_rows() || study.simulator.system.analysis.is_without_steps();
+    let duration = study.description.simulation.duration;
+    match if is_resolved { None } else { study.simulator.time_functions(duration) } {
         Some(functions) => functions.divided(&schedule),
         None => Divided { schedule, unresolved_from: None },
     }
